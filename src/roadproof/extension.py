@@ -65,6 +65,14 @@ class Extension:
     """Functions that give words with descriptions, with which a shell completes a value, by flag."""
     options: Entries = field(default_factory=dict)
     """Classes of further options (``frontends.settings.option.Settings``), by the command that has them."""
+    sections: Entries = field(default_factory=dict)
+    """Sections of pages (``extensions.pages.page.section_kind``), by the kind of the result."""
+    formats: tuple[str, ...] = ()
+    """Formats of recordings (``extensions.traffic.formats.source.Format``)."""
+    traces: Entries = field(default_factory=dict)
+    """Readers of a file of one trace (``extensions.traffic.formats.source.ReadTrace``), by its ending."""
+    drives: Entries = field(default_factory=dict)
+    """Readers of a file that is a drive (``extensions.traffic.formats.source.ReadDrive``), by its ending."""
     schemas: tuple[str, ...] = ()
     """Mappings of definitions of JSON files to their titles."""
 

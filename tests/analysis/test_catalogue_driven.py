@@ -9,8 +9,8 @@ import pytest
 import roadproof as rp
 from roadproof.extensions.catalogue import driven
 from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
-from roadproof.extensions.catalogue.decisions import Decision
 from roadproof.extensions.catalogue.driven import borne_out, driven_name
+from roadproof.extensions.traffic.evaluate.decisions import Decision
 from roadproof.frontends.api.checking import check
 from roadproof.verdict import ExitCode, Verdict
 from sharing import made_once

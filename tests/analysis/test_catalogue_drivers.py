@@ -17,14 +17,6 @@ import roadproof as rp
 from preventing.read import specification, values
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
-from roadproof.extensions.catalogue import decisions
-from roadproof.extensions.catalogue.decisions import (
-    Decision,
-    Drivers,
-    decide_drive,
-    decide_formula,
-    decide_trace,
-)
 from roadproof.extensions.catalogue.driver_sides import read_side_name
 from roadproof.extensions.catalogue.entries import Abstract, Concrete
 from roadproof.extensions.catalogue.listing import _by_itself
@@ -34,6 +26,14 @@ from roadproof.extensions.drivers.initial_state import State
 from roadproof.extensions.drivers.lines import SIDES, Side
 from roadproof.extensions.drivers.manoeuvres import KMH, MANOEUVRES, signals_of
 from roadproof.extensions.drivers.models import MODELS, SCENARIOS
+from roadproof.extensions.traffic.evaluate import decisions
+from roadproof.extensions.traffic.evaluate.decisions import (
+    Decision,
+    Drivers,
+    decide_drive,
+    decide_formula,
+    decide_trace,
+)
 from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording
 from roadproof.extensions.traffic.evaluate.one_trace import cut_trace, sample_drive
 from roadproof.frontends.cli.main import main

@@ -18,9 +18,9 @@ from roadproof.engines.search.batches import Engines
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.extensions.catalogue.writing import _free
-from roadproof.extensions.drivers.restricting import drivers_of
 from roadproof.extensions.kernel import coq
 from roadproof.extensions.kernel.asking import KernelQuestion, write
+from roadproof.extensions.traffic.evaluate.on_trace import drivers_of
 from roadproof.frontends.cli.main import main
 from roadproof.questions import settle
 from tables import read_table

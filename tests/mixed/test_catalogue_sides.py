@@ -9,13 +9,13 @@ import pytest
 from mixed.test_catalogue_verdicts import FOUR, HOME, ONE, concrete, decision, fact
 from roadproof.evidence.subject import TestedSide
 from roadproof.extensions.catalogue.asked import Questions
-from roadproof.extensions.catalogue.decisions import Decision, decide_formula
 from roadproof.extensions.catalogue.driver_sides import read_side_name, side_name
 from roadproof.extensions.catalogue.fact import Fact
 from roadproof.extensions.catalogue.playing import choices, chosen_vehicles
 from roadproof.extensions.catalogue.ranges import Span, spans_of
 from roadproof.extensions.catalogue.showing import ENDANGERED, _borne_out
 from roadproof.extensions.catalogue.view import CatalogueView
+from roadproof.extensions.traffic.evaluate.decisions import Decision, decide_formula
 from roadproof.reasons import NO_REASON, Why
 
 # --- driver models ---------------------------------------------------------------------------------

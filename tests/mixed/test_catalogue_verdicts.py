@@ -9,7 +9,6 @@ import pytest
 from roadproof.evidence.subject import TestedSide
 from roadproof.extensions.catalogue.asked import NOWHERE, Questions
 from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
-from roadproof.extensions.catalogue.decisions import Decision
 from roadproof.extensions.catalogue.entries import Abstract, Concrete
 from roadproof.extensions.catalogue.fact import Fact
 from roadproof.extensions.catalogue.kept import Figure, Relation, Shown
@@ -17,6 +16,7 @@ from roadproof.extensions.catalogue.showing import ENDANGERED, GAP, ConcreteAnsw
 from roadproof.extensions.catalogue.tested import Targets, figures, figures_beside
 from roadproof.extensions.catalogue.tested import tested as targets_of
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer
+from roadproof.extensions.traffic.evaluate.decisions import Decision
 from roadproof.library.bind import values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library

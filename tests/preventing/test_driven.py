@@ -7,12 +7,12 @@ import pytest
 
 import roadproof as rp
 from roadproof.engines.search import ask
-from roadproof.extensions.catalogue import decisions
 from roadproof.extensions.drivers.driving import DriverSettings
 from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.drivers.objection import Driven
 from roadproof.extensions.drivers.outcome import Result
 from roadproof.extensions.drivers.replay import replay
+from roadproof.extensions.traffic.evaluate import decisions
 from roadproof.library.bind import values_with
 from roadproof.reasons import Why
 from roadproof.verdict import Verdict

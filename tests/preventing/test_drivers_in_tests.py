@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from preventing.read import specification, values
-from roadproof.extensions.catalogue.decisions import Drivers, decide_trace
+from roadproof.extensions.traffic.evaluate.decisions import Drivers, decide_trace
 from roadproof.extensions.traffic.evaluate.one_trace import read_samples
 
 FOLDER = Path(__file__).parents[3] / "shared" / "data" / "drivers"

@@ -24,6 +24,9 @@ class Modifier(Protocol):
     def left_open(self, home: Specification) -> Specification:
         """Return the same definitions with less said: what is proved of them is proved of ``home``, too."""
 
+    def check_drives(self) -> None:
+        """Raises ``UsageError`` where it says nothing of drives outside of scenarios."""
+
     def objector(self, search: Search, problem: SearchProblem) -> Callable[[FoundDrive], str] | None:
         """Return who says what speaks against a drive that was found, if anyone does; "" is nothing."""
 

@@ -9,7 +9,6 @@ EXTENSION = Extension(
         "catalogue",
         "drivers",
         "pages",
-        "surveys",
     ),
     functions={
         "assurance": "assuring:assurance",
@@ -23,4 +22,5 @@ EXTENSION = Extension(
     options=dict.fromkeys(
         ("prove", "check", "witness", "evaluate", "coverage", "catalogue", "preventable"), "options:Reported"
     ),
+    sections={"trace": "page:TRACE"},
 )

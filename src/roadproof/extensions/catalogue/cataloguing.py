@@ -10,7 +10,6 @@ from roadproof.evidence.claim import Objective
 from roadproof.extensions.catalogue import kept, report, settings
 from roadproof.extensions.catalogue.cases import catalogue_cases
 from roadproof.extensions.catalogue.completing import PriorResults, complete
-from roadproof.extensions.catalogue.decisions import Decision
 from roadproof.extensions.catalogue.driven import driven_name
 from roadproof.extensions.catalogue.entries import Catalogue, Concrete, Request
 from roadproof.extensions.catalogue.keywords import CatalogueKeywords
@@ -24,6 +23,7 @@ from roadproof.extensions.catalogue.view import CatalogueView
 from roadproof.extensions.catalogue.writing import CompletionAnswer, write_completions
 from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.drivers.restricting import restricted
+from roadproof.extensions.traffic.evaluate.decisions import Decision
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, definitions_of

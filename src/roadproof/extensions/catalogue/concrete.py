@@ -7,10 +7,10 @@ from roadproof.evidence.answer import Judged
 from roadproof.evidence.claim import Claim, On, claim_of
 from roadproof.extensions.catalogue.abstract import stem_of
 from roadproof.extensions.catalogue.asked import Questions
-from roadproof.extensions.catalogue.decisions import Drivers, content_of
 from roadproof.extensions.catalogue.entries import Concrete, Freedom
 from roadproof.extensions.catalogue.showing import ConcreteAnswer, show
 from roadproof.extensions.catalogue.traces import digest_of
+from roadproof.extensions.traffic.evaluate.decisions import Drivers, content_of
 from roadproof.library.elaborate import read_claim
 from roadproof.questions.question import Answers, Steps
 from roadproof.runtime.canonical import digest

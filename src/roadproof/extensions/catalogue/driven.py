@@ -10,8 +10,8 @@ from pathlib import Path
 from roadproof.evidence.claim import Claim, Exists, claim_of
 from roadproof.evidence.drive_file import load_drive
 from roadproof.extensions.catalogue.abstract import stem_of
-from roadproof.extensions.catalogue.decisions import Decision, DrivenTest, Drivers
 from roadproof.extensions.catalogue.showing import ConcreteAnswer, decisions_on
+from roadproof.extensions.traffic.evaluate.decisions import Decision, DrivenTest, Drivers
 from roadproof.library.elaborate import read_claim
 from roadproof.questions.basis import Basis
 from roadproof.questions.question import Answers, Steps

@@ -9,10 +9,10 @@ from typing import get_args
 
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.catalogue.asked import Questions
-from roadproof.extensions.catalogue.decisions import Decision, Drivers, course_of
 from roadproof.extensions.catalogue.showing import decisions_on, shown_from_start
 from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.drivers.restriction import Side
+from roadproof.extensions.traffic.evaluate.decisions import Decision, Drivers, course_of
 from roadproof.library.scenarios import number_in
 
 

@@ -14,7 +14,6 @@ from roadproof.evidence.subject import OTHER, DriverSide, Subject, SubjectKind, 
 from roadproof.extensions.catalogue.abstract import PairBatch, TestBatch, stem_of
 from roadproof.extensions.catalogue.asked import Questions
 from roadproof.extensions.catalogue.concrete import ConcreteBatch
-from roadproof.extensions.catalogue.decisions import Drivers, drivers_in
 from roadproof.extensions.catalogue.driven import DrivenBatch, driven_batches
 from roadproof.extensions.catalogue.driver_sides import has_sides
 from roadproof.extensions.catalogue.entries import Abstract, Catalogue, Concrete, Request
@@ -30,6 +29,7 @@ from roadproof.extensions.catalogue.view import CatalogueView
 from roadproof.extensions.drivers.restriction import restriction_of, unrestricted
 from roadproof.extensions.surveys.classify.classes import Classes, plan_of
 from roadproof.extensions.surveys.classify.division import divide
+from roadproof.extensions.traffic.evaluate.decisions import Drivers, drivers_in
 from roadproof.questions.basis import Basis
 from roadproof.questions.nested import Nested
 from roadproof.questions.question import Answers, Batch, Place, seen, walk

@@ -8,14 +8,13 @@ from textwrap import indent
 from typing import Any
 
 from roadproof.extensions.catalogue.cases import catalogue_cases
-from roadproof.extensions.catalogue.decisions import Decision
 from roadproof.extensions.catalogue.gaps import PREFIX
 from roadproof.extensions.catalogue.kept import Figure, Remark, Target
 from roadproof.extensions.catalogue.ranges import Span
 from roadproof.extensions.catalogue.tested import CLASSES, SCENARIOS, Targets, kind_of
 from roadproof.extensions.catalogue.view import CatalogueView
 from roadproof.extensions.drivers.models import MODELS
-from roadproof.extensions.drivers.outcome import told_faster
+from roadproof.extensions.traffic.evaluate.decisions import Decision, said
 from roadproof.frontends.api.build_result import formats, written
 from roadproof.frontends.report.figures import count_axis, make_figure
 from roadproof.frontends.report.sheet import Column, Mark, Sheet, csv_text
@@ -57,15 +56,6 @@ def _lines_of_test(test: str, scenario: str, those: Sequence[Decision]) -> Itera
         models = [x.driver for x in those if x.reason == reason]
         whose = "" if len(models) == len(those) else f"{', '.join(models)}: "
         yield f"    {whose}{reason}"
-
-
-def said(decision: Decision) -> str:
-    """The side with its figures: ``preventable (3.2 m left)``, ``unpreventable (at 4.1 s, 9 m/s faster)``."""
-    if decision.gap is not None:
-        return f"{decision.side} ({decision.gap:g} m left)"
-    if decision.instant is not None and decision.speed is not None:
-        return f"{decision.side} (touches at {decision.instant:g} s, {told_faster(decision.speed)})"
-    return decision.side
 
 
 def drivers_csv(decisions: Sequence[tuple[str, Decision]]) -> str:

@@ -12,13 +12,13 @@ from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.judged import JudgedDrive, judge_file
 from roadproof.extensions.catalogue.asked import DangerQuestion, Key, Questions
-from roadproof.extensions.catalogue.decisions import Decision, Drivers, decide_drive, decide_trace
 from roadproof.extensions.catalogue.entries import Concrete, Freedom
 from roadproof.extensions.catalogue.kept import Shown, Why
 from roadproof.extensions.catalogue.playing import cast_samples, choices, no_role, play_drive
 from roadproof.extensions.catalogue.traces import digest_of, is_samples, roles_in, traces_of
 from roadproof.extensions.catalogue.why import Course, signals_of, why_none
 from roadproof.extensions.drivers.restriction import restriction_of, unrestricted
+from roadproof.extensions.traffic.evaluate.decisions import Decision, Drivers, decide_drive, decide_trace
 from roadproof.extensions.traffic.evaluate.faults import faults_of
 from roadproof.extensions.traffic.evaluate.one_trace import OneTrace, is_pair
 from roadproof.library.scenarios import LANE, PAIR, SUBJECT, endangered, name_of, number_in

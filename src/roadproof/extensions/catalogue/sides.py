@@ -17,12 +17,12 @@ from roadproof.evidence.claim import Claim, Exists, claim_of
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.catalogue.abstract import stem_of
 from roadproof.extensions.catalogue.asked import Questions
-from roadproof.extensions.catalogue.decisions import Decision, Drivers
 from roadproof.extensions.catalogue.driver_sides import decisions_of, models_of, side_name
 from roadproof.extensions.catalogue.entries import Abstract
 from roadproof.extensions.catalogue.fact import Fact
 from roadproof.extensions.catalogue.showing import names_shown
 from roadproof.extensions.drivers.restriction import Restriction, Side, check_library, files_for, said_in
+from roadproof.extensions.traffic.evaluate.decisions import Decision, Drivers
 from roadproof.library.compose import both
 from roadproof.library.loading import load_library
 from roadproof.library.scenarios import Scenario, applied, number_in

@@ -7,7 +7,6 @@ from typing import Any
 
 from roadproof.extensions.catalogue import kept
 from roadproof.extensions.catalogue.asked import Questions
-from roadproof.extensions.catalogue.decisions import Decision, Drivers, decide_formula
 from roadproof.extensions.catalogue.driven import borne_out, driven_name
 from roadproof.extensions.catalogue.driver_sides import decisions_of, read_side_name
 from roadproof.extensions.catalogue.entries import Abstract, Catalogue, Concrete, Request
@@ -21,6 +20,7 @@ from roadproof.extensions.surveys.coverage import kept as coverage
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer
 from roadproof.extensions.surveys.coverage.data import claims_data, class_data
 from roadproof.extensions.surveys.coverage.question import CoverageView
+from roadproof.extensions.traffic.evaluate.decisions import Decision, Drivers, decide_formula
 from roadproof.library.bind import values_with
 from roadproof.questions.basis import Basis
 from roadproof.questions.nested import Nested

@@ -16,7 +16,7 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import subformulas
 
 if TYPE_CHECKING:
-    from roadproof.extensions.catalogue.decisions import Drivers
+    pass
 
 
 def restricted(
@@ -49,16 +49,6 @@ def restricted(
     if about == "scenarios":
         check_courses(wanted.model, [*dict.fromkeys(_asked(found, among, what))], said)
     return found
-
-
-def drivers_of(home: Definitions, names: tuple[str, ...]) -> "Drivers | None":
-    """Driver models to be asked, in definitions on top of which ``driver.spec`` is read; None for no names.
-
-    Raises ``InputError``, ``UsageError``.
-    """
-    from roadproof.extensions.catalogue.decisions import drivers_in
-
-    return drivers_in(home.specification.in_set(home.sets[0]), home.values, names)
 
 
 def _asked(home: Definitions, among: Among, what: Sequence[What] | None) -> Iterator[int]:

@@ -70,6 +70,14 @@ class Restriction:
         found = {x.name: x for x in parse_library(_OPEN, models.PREVENTION) if isinstance(x, Definition)}
         return Specification(home.library, home.set_name, home.options, {**home.definitions, **found})
 
+    def check_drives(self) -> None:
+        """Raises ``UsageError`` where scenarios begin so: most drives are in none of them."""
+        if self.about == "scenarios":
+            raise UsageError(
+                f"{models.BEGINS}=scenarios: drives that do not begin so would all be gaps; ask with "
+                f"{models.BEGINS}=drives"
+            )
+
     def objector(self, search: "Search", problem: "SearchProblem") -> "Callable[[FoundDrive], str] | None":
         """Return who puts the model into drives of scenarios that begin so, if any do."""
         if not self.scenarios:
@@ -171,16 +179,6 @@ def _bare(formula: Formula) -> Formula:
                 return part
 
     return f.transform(without_names(formula), change)
-
-
-def check_drives(options: Mapping[str, str]) -> None:
-    """Raises ``UsageError`` where scenarios begin so, and drives are asked for that are in none of them."""
-    found = restriction_of(options)
-    if found is not None and found.about == "scenarios":
-        raise UsageError(
-            f"{models.BEGINS}=scenarios: drives that do not begin so would all be gaps; ask with "
-            f"{models.BEGINS}=drives"
-        )
 
 
 def files_for(given: Sequence[Source]) -> list[Path | Source]:

@@ -11,4 +11,7 @@ EXTENSION = Extension(
     ),
     functions={"export": "exporting:export", "compile": "compiling:compile"},
     completions=dict.fromkeys(("--to", "--format"), "completion:formats"),
+    formats=("commonroad:FORMAT", "openscenario:FORMAT", "osi:FORMAT"),
+    traces={".xosc": "openscenario:read_scenario"},
+    drives={".xosc": "storyboard.drives:read_storyboard_drive"},
 )

@@ -399,4 +399,5 @@ FORMAT = Format(
     _find,
     read_recording,
     "{0}, sampled {rate} times a second",
+    is_name=lambda path: split(path) is not None,
 )

@@ -8,6 +8,7 @@ EXTENSION = Extension(
     needs=(
         "catalogue",
         "drivers",
+        "exchange",
         "surveys",
         "traffic",
     ),

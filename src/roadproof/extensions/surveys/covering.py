@@ -8,11 +8,11 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import ClassVar, Unpack
 
+from roadproof.engines.modifier import modifier_of
 from roadproof.errors import UsageError
 from roadproof.evidence.codec import write
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.drivers.restriction import check_drives
 from roadproof.extensions.surveys import settings
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer, GapTraffic, Survey, with_traffic
 from roadproof.extensions.surveys.coverage.cases import coverage_cases
@@ -172,7 +172,9 @@ def coverage(
     given = settings.Coverage.of(options)
     wider = given.wider
     home = given.modified(definitions_of(using))
-    check_drives(home.specification.options)
+    modifier = modifier_of(home.specification.options)
+    if modifier is not None:
+        modifier.check_drives()
     basis = basis_of(home, given, given.vehicles)
     name = home.alone.set_name
     if wider is not None:

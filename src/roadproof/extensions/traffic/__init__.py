@@ -6,8 +6,8 @@ EXTENSION = Extension(
     title="Recorded and simulated traffic: monitors and evaluations",
     audience="researchers",
     needs=(
-        "maps",
         "drivers",
+        "maps",
     ),
     functions={
         "monitor": "monitoring:monitor",

@@ -14,11 +14,11 @@ from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.catalogue.decisions import Decision
-from roadproof.extensions.drivers import on_trace as driven
-from roadproof.extensions.exchange.storyboard.drives import read_storyboard_drive
+from roadproof.extension import entries, imported
 from roadproof.extensions.traffic.answers import monitor as kept
 from roadproof.extensions.traffic.answers.monitor import Override, Place, Truth
+from roadproof.extensions.traffic.evaluate import on_trace as driven
+from roadproof.extensions.traffic.evaluate.decisions import Decision
 from roadproof.extensions.traffic.evaluate.observed import (
     FirstAnswer,
     Spans,
@@ -38,6 +38,7 @@ from roadproof.extensions.traffic.evaluate.one_trace import (
     sample_drive,
     with_causes,
 )
+from roadproof.extensions.traffic.formats.source import ReadDrive
 from roadproof.extensions.traffic.formats.sources import has_numbers
 from roadproof.extensions.traffic.formats.table import Frame, columns_of
 from roadproof.extensions.traffic.keywords import MonitorKeywords
@@ -197,8 +198,8 @@ def monitor(
         return _on_drive(what, load_drive(Path(on)), str(on), using, given)
     if isinstance(on, JudgedDrive | DriveFile):
         return _on_drive(what, on.file if isinstance(on, JudgedDrive) else on, "drive", using, given)
-    if given.view == "dense" and str(on).endswith(".xosc"):
-        return _on_storyboard(what, Path(str(on)), definitions_of(using), given)
+    if given.view == "dense" and isinstance(on, str | Path) and Path(on).suffix in entries("drives"):
+        return _on_given_drive(what, Path(str(on)), definitions_of(using), given)
     if given.view == "dense":
         raise UsageError("--view dense requires a drive or OpenSCENARIO file: others have samples only")
     home = definitions_of(using)
@@ -213,7 +214,7 @@ def _read(on: "str | Path | OneTrace | Mapping[str, Any] | Frame", given: Monito
         return on
     if not isinstance(on, str | Path):
         return trace(on, road or "main-2")
-    if Path(on).suffix in (".csv", ".parquet", ".xosc") and not has_numbers(Path(on)):
+    if Path(on).suffix in (".csv", ".parquet", *entries("traces")) and not has_numbers(Path(on)):
         return read_samples(Path(on), None if road is None else as_road(road), given.strict)
     if isinstance(road, Road):
         raise UsageError(f"--road: {on} is a recording; name a road by its name, path or map, or omit it")
@@ -269,10 +270,11 @@ def _on_drive(
     return MonitorAnswer(home.library, observed, place, notes, file.road, found)
 
 
-def _on_storyboard(what: What, path: Path, home: Definitions, given: Monitor) -> MonitorAnswer:
+def _on_given_drive(what: What, path: Path, home: Definitions, given: Monitor) -> MonitorAnswer:
     if given.road is not None:
         raise UsageError(f"--road: {path} has the road of its storyboard; omit --road")
-    found = read_storyboard_drive(path)
+    read: ReadDrive = imported(entries("drives")[path.suffix])
+    found = read(path)
     set_name, formula = home.specification.set_name, "true"
     file = DriveFile(None, set_name, formula, found.horizon, {}, {}, {}, found.road, found.drive)
     answer = _on_drive(what, file, str(path), home, given)

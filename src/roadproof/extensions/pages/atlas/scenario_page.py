@@ -6,11 +6,11 @@ from typing import TypeAlias
 
 from roadproof.extensions.drivers.models import course_in
 from roadproof.extensions.drivers.preventable.data import PlateData
-from roadproof.extensions.drivers.preventable.report import plane_of
 from roadproof.extensions.pages.atlas.answers import OBJECTIVES, Answers, Source, name_in
 from roadproof.extensions.pages.atlas.notation import as_html, head_as_html, shown
 from roadproof.extensions.pages.atlas.pictures import DrivePicture
 from roadproof.extensions.pages.atlas.traffic import SOURCE, frequencies
+from roadproof.extensions.pages.page.plates import plane_of
 from roadproof.extensions.surveys.coverage import kept as coverage
 from roadproof.library.scenarios import Scenario, applied
 from roadproof.library.specification import Specification

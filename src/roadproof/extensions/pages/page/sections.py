@@ -2,24 +2,23 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 from roadproof.errors import InputError
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Finding, checkers
-from roadproof.extensions.assurance.answers import trace
-from roadproof.extensions.assurance.requirements.report import counted
-from roadproof.extensions.drivers.preventable.report import page_plates
+from roadproof.extension import entries, imported
 from roadproof.extensions.pages.page import catalogues, claims, values
 from roadproof.extensions.pages.page.page_context import PageContext
+from roadproof.extensions.pages.page.plates import page_plates
 from roadproof.extensions.pages.page.results import Result, Words
+from roadproof.extensions.pages.page.section_kind import SectionKind, Values
 from roadproof.extensions.pages.page.summary import Overview, Statement, overview
 from roadproof.extensions.pages.page.templates import render
 from roadproof.library.words import spans
 from roadproof.questions.compare import ComparisonData
 from roadproof.questions.data import QUESTION
 
-Values: TypeAlias = Mapping[str, object]
 _HEADING = ("schema", "roadproof", "library", "seconds", "options", "parameters", "specs", "view")
 _EMPTY: tuple[object, ...] = (None, "", [], {})
 
@@ -33,7 +32,7 @@ class Section(NamedTuple):
 
 def section(result: Result, context: PageContext, words: Words) -> Section:
     """A result of any kind as HTML; ``words`` are what scenarios are called. Raises ``InputError``."""
-    kind = _KINDS.get(result.kind, _Kind(result.kind, "", "plain", _plain))
+    kind = _kind_of(result)
     rejected = () if result.folder is None else context.rejected.get(str(result.folder / QUESTION), ())
     frame = {"title": kind.title, "question": kind.question, "set": result.data.get("set")}
     known = {number: x for number, x in words.items() if x}
@@ -56,6 +55,14 @@ def section(result: Result, context: PageContext, words: Words) -> Section:
         ) from None
     wrong = len(rejected) + context.rejected_in(result.folder)
     return Section(overview(result, kind.title, kind.question, wrong), html)
+
+
+def _kind_of(result: Result) -> SectionKind:
+    own = entries("sections")
+    if result.kind in own:
+        found: SectionKind = imported(own[result.kind])
+        return found
+    return _KINDS.get(result.kind, SectionKind(result.kind, "", "plain", _plain))
 
 
 def drive_section(findings: Sequence[Finding], context: PageContext) -> Section:
@@ -105,50 +112,40 @@ def _columns(value: object) -> Sequence[str] | None:
     return [key for key in names if any(x.get(key) not in _EMPTY for x in value)]
 
 
-class _Kind(NamedTuple):
-    """How results of a kind are shown: title, question, template, and the values for it."""
-
-    title: str
-    question: str
-    template: str
-    values: Callable[[Result, PageContext, Words], Values]
-
-
 def _read_as(answer: type) -> Callable[[Result, PageContext, Words], Values]:
     """Values of a section that needs no more than the answer itself."""
     return lambda result, context, words: {"answer": read(answer, result.data, result.name)}
 
 
-def _traced(result: Result, context: PageContext, words: Words) -> Values:
-    """The requirements of an answer, and how many are in each state."""
-    answer = read(trace.Answer, result.data, result.name)
-    return {"answer": answer, "counted": counted(answer)}
-
-
-_CLAIMS = _Kind("Claims", "Which claims hold in all traffic?", "claims", claims.claims)
-_KINDS: Mapping[str, _Kind] = {
+_CLAIMS = SectionKind("Claims", "Which claims hold in all traffic?", "claims", claims.claims)
+_KINDS: Mapping[str, SectionKind] = {
     "index": _CLAIMS,
     "verdicts": _CLAIMS,
-    "witness": _Kind("Drives", "Does a drive show each formula?", "witness", values.witnessed),
-    "compare": _Kind("Two formulas", "Does one imply the other?", "compare", _read_as(ComparisonData)),
-    "overlap": _Kind("Compatible scenarios", "Which pairs can one drive show?", "overlap", values.overlap),
-    "coverage": _Kind("Gaps", "Which dangers does the set of scenarios miss?", "coverage", values.coverage),
-    "classify": _Kind("Classes", "Which classes partition the scenarios?", "classify", values.classes),
-    "order": _Kind("Implications", "Which scenarios imply which?", "order", values.order),
-    "redundancy": _Kind("Redundant parts", "Which parts change nothing?", "redundancy", values.redundancy),
-    "explore": _Kind("Extremes", "How far can a drive of the formula go?", "explore", values.explored),
-    "monitor": _Kind("One trace", "Where does the formula hold on it?", "monitor", values.monitored),
-    "catalogue": _Kind(
+    "witness": SectionKind("Drives", "Does a drive show each formula?", "witness", values.witnessed),
+    "compare": SectionKind("Two formulas", "Does one imply the other?", "compare", _read_as(ComparisonData)),
+    "overlap": SectionKind(
+        "Compatible scenarios", "Which pairs can one drive show?", "overlap", values.overlap
+    ),
+    "coverage": SectionKind(
+        "Gaps", "Which dangers does the set of scenarios miss?", "coverage", values.coverage
+    ),
+    "classify": SectionKind("Classes", "Which classes partition the scenarios?", "classify", values.classes),
+    "order": SectionKind("Implications", "Which scenarios imply which?", "order", values.order),
+    "redundancy": SectionKind(
+        "Redundant parts", "Which parts change nothing?", "redundancy", values.redundancy
+    ),
+    "explore": SectionKind("Extremes", "How far can a drive of the formula go?", "explore", values.explored),
+    "monitor": SectionKind("One trace", "Where does the formula hold on it?", "monitor", values.monitored),
+    "catalogue": SectionKind(
         "Catalogue of tests", "Which scenarios do they cover?", "catalogue", catalogues.catalogue
     ),
-    "preventable": _Kind(
+    "preventable": SectionKind(
         "Preventable collisions", "From which states does a driver prevent one?", "preventable", page_plates
     ),
-    "traffic-results": _Kind(
+    "traffic-results": SectionKind(
         "Recordings", "How often do the scenarios occur in traffic?", "traffic-results", values.traffic
     ),
-    "trace": _Kind("Requirements", "Which of them are shown?", "trace", _traced),
-    "list": _Kind("Library", "Which definitions does it hold?", "plain", _plain),
-    "show": _Kind("Definition", "What does it say?", "plain", _plain),
-    "check": _Kind("Check of evidence", "Does independent code accept it?", "plain", _plain),
+    "list": SectionKind("Library", "Which definitions does it hold?", "plain", _plain),
+    "show": SectionKind("Definition", "What does it say?", "plain", _plain),
+    "check": SectionKind("Check of evidence", "Does independent code accept it?", "plain", _plain),
 }

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.extensions.exchange import openscenario
+from roadproof.extension import entries, imported
 from roadproof.extensions.traffic.evaluate.traces import KIND, by_vehicle, gather_one, refuse_missing
 from roadproof.extensions.traffic.formats import samples
 from roadproof.extensions.traffic.formats.recording import (
@@ -24,7 +24,7 @@ from roadproof.extensions.traffic.formats.recording import (
     kind_called,
     own_numbers,
 )
-from roadproof.extensions.traffic.formats.source import beside
+from roadproof.extensions.traffic.formats.source import ReadTrace, beside
 from roadproof.extensions.traffic.formats.sources import find_source, has_numbers
 from roadproof.extensions.traffic.formats.straight import of_road, whole
 from roadproof.extensions.traffic.formats.table import Column, Table
@@ -272,8 +272,10 @@ def read_samples(path: Path, road: Road | None = None, strict: bool = False) -> 
     the file may be left out. ``notes`` of the trace say in what the file contradicts itself. Raises
     ``InputError`` with file, row, column, value and rule, also where it contradicts itself too much.
     """
-    if path.suffix == ".xosc":
-        scenario = openscenario.read_scenario(path, strict)
+    own = entries("traces")
+    if path.suffix in own:
+        read: ReadTrace = imported(own[path.suffix])
+        scenario = read(path, strict)
         table, road, notes = scenario.table, road or scenario.road, (*scenario.otherwise, *scenario.faults)
         computed, faults = scenario.computed, scenario.faults
     else:
@@ -282,7 +284,7 @@ def read_samples(path: Path, road: Road | None = None, strict: bool = False) -> 
     if road is None:
         known = beside(path, samples.ROAD_ENDING)
         road = load_recorded_road(known[0])[0] if known else load_road(USUAL_ROAD)
-    if path.suffix != ".xosc":
+    if path.suffix not in own:
         notes += unread_of_road(road, strict)
     lists = {name: values.tolist() for name, values in table.columns.items()}
     try:

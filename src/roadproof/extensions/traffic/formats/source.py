@@ -6,13 +6,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 import numpy as np
 
 from roadproof.extensions.traffic.formats.clock import Rate
 from roadproof.extensions.traffic.formats.recording import BACKWARDS, Recording, backwards, with_notes
+from roadproof.extensions.traffic.formats.table import Table
 from roadproof.extensions.traffic.formats.windows import WindowedRecording, undivided
+from roadproof.world.drive import Drive
+from roadproof.world.road import Road
 
 Files: TypeAlias = tuple[Path, ...]
 TRACK_FILES = re.compile(r"(\d+)_(?:recordingMeta|tracksMeta|tracks)\.csv")
@@ -31,6 +34,7 @@ class Format:
     ``told``: the files in words. ``divide``: a recording that is too large to be read as a whole, in windows,
     None for others, strict or not; formats without it are always read as a whole. ``on_road``: the format for
     recordings on a road of a map, as ``maps.selection`` reads it, where they do not say their own.
+    ``is_name``: whether a path names a recording of this kind, though perhaps no file.
     """
 
     name: str
@@ -40,6 +44,49 @@ class Format:
     rate_at: str
     divide: Callable[[Path, bool], WindowedRecording | None] | None = None
     on_road: "Callable[[str], Format] | None" = None
+    is_name: Callable[[Path], bool] = Path.exists
+
+
+class TraceFile(Protocol):
+    """The samples of one trace. ``otherwise``: notes on what was left out, or taken otherwise than written;
+    ``faults``: notes on contradictions; ``computed``: whether samples are worked out, and not measured."""
+
+    @property
+    def table(self) -> Table: ...
+
+    @property
+    def road(self) -> Road: ...
+
+    @property
+    def computed(self) -> bool: ...
+
+    @property
+    def faults(self) -> tuple[str, ...]: ...
+
+    @property
+    def otherwise(self) -> tuple[str, ...]: ...
+
+
+class GivenDrive(Protocol):
+    """A drive on a road up to its ``horizon`` (s), with a note on how exact it is."""
+
+    @property
+    def drive(self) -> Drive: ...
+
+    @property
+    def road(self) -> Road: ...
+
+    @property
+    def horizon(self) -> Fraction: ...
+
+    @property
+    def note(self) -> str: ...
+
+
+ReadTrace: TypeAlias = Callable[[Path, bool], TraceFile]
+"""Reads a file, strict or not. Raises ``InputError``."""
+ReadDrive: TypeAlias = Callable[[Path], GivenDrive]
+"""Reads a file. Raises ``InputError``."""
 
 
 @dataclass(frozen=True)

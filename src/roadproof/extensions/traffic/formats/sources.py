@@ -1,13 +1,12 @@
-"""Which recordings a path holds. A new format is a file of this folder and a line here."""
+"""Which recordings a path holds. Extensions add formats to those of this folder."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 from roadproof.errors import InputError, UsageError
-from roadproof.extensions.exchange import commonroad, openscenario, osi
-from roadproof.extensions.exchange.storyboard.distributions import split
+from roadproof.extension import imported, listed
 from roadproof.extensions.maps.selection import is_map, read_selection
 from roadproof.extensions.traffic.formats import converted, exid, highd, ind, ngsim, samples
 from roadproof.extensions.traffic.formats.large import divide_large
@@ -54,18 +53,14 @@ def _of_samples(name: str, told: str, find: Callable[[Path], dict[str, Files]]) 
 
 CSV = _of_samples("CSV", f"NAME.csv with the header {','.join(samples.HEADER)}", _find_csv)
 PARQUET = _of_samples("Parquet", "NAME.parquet with the same columns", _find_parquet)
-FORMATS: tuple[Format, ...] = (
-    highd.FORMAT,
-    exid.FORMAT,
-    ind.FORMAT,
-    ngsim.FORMAT,
-    commonroad.FORMAT,
-    openscenario.FORMAT,
-    osi.FORMAT,
-    CSV,
-    PARQUET,
-    converted.FORMAT,
-)
+_MEASURED = (highd.FORMAT, exid.FORMAT, ind.FORMAT, ngsim.FORMAT)
+_TABLES = (CSV, PARQUET, converted.FORMAT)
+
+
+@cache
+def formats() -> tuple[Format, ...]:
+    """All formats of recordings, with those that extensions add."""
+    return (*_MEASURED, *map(imported, listed("formats")), *_TABLES)
 
 
 def find_sources(path: Path, strict: bool = False, road: str | None = None) -> tuple[RecordingSource, ...]:
@@ -74,11 +69,11 @@ def find_sources(path: Path, strict: bool = False, road: str | None = None) -> t
     ``strict``: a recording is read as a whole or not at all. ``road``: for recordings that do not say theirs;
     ``UsageError`` for others.
     """
-    if not path.exists() and split(path) is None:
+    if not any(x.is_name(path) for x in formats()):
         raise InputError(f"recordings={path}: not a folder and not a file; check the path")
-    by_format = {x: found for x in FORMATS if (found := x.find(path))}
+    by_format = {x: found for x in formats() if (found := x.find(path))}
     if not by_format:
-        told = "; ".join(f"{x.name}: {x.told}" for x in FORMATS)
+        told = "; ".join(f"{x.name}: {x.told}" for x in formats())
         what = "no recording in it" if path.is_dir() else "no recording"
         raise InputError(f"recordings={path}: {what}; recordings are {told}")
     if len(by_format) > 1:

@@ -9,11 +9,17 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.extensions.catalogue.decisions import Decision, Drivers, course_of, decide_drive, decide_trace
-from roadproof.extensions.catalogue.report import said
 from roadproof.extensions.drivers.models import MODELS, SCENARIOS, boundary_name, check_courses, check_driver
-from roadproof.extensions.drivers.restricting import drivers_of
 from roadproof.extensions.drivers.verdict import DriverVerdict
+from roadproof.extensions.traffic.evaluate.decisions import (
+    Decision,
+    Drivers,
+    course_of,
+    decide_drive,
+    decide_trace,
+    drivers_in,
+    said,
+)
 from roadproof.extensions.traffic.evaluate.one_trace import OneTrace
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.library.scenarios import Scenario, name_of, vehicles_of
@@ -69,6 +75,14 @@ def decisions_on(
             yield from decide_drive(trace, drivers, cast.scenario, cast.vehicles, 0.0)
         else:
             yield from decide_trace(trace, drivers, cast.scenario, cast.vehicles, 0.0, cast.vehicles)
+
+
+def drivers_of(home: Definitions, names: tuple[str, ...]) -> Drivers | None:
+    """Driver models to be asked, in definitions on top of which ``driver.spec`` is read; None for no names.
+
+    Raises ``InputError``, ``UsageError``.
+    """
+    return drivers_in(home.specification.in_set(home.sets[0]), home.values, names)
 
 
 def driver_lines(decisions: tuple[Decision, ...]) -> Iterator[str]:

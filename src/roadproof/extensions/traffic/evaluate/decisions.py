@@ -15,7 +15,7 @@ from roadproof.extensions.drivers.driving import DriverSettings, require, rest_o
 from roadproof.extensions.drivers.initial_state import State
 from roadproof.extensions.drivers.manoeuvres import ManoeuvreName
 from roadproof.extensions.drivers.models import DRIVERS, MODELS, ModelName, course_in, foreseen
-from roadproof.extensions.drivers.outcome import Outcome, shown_by_drive
+from roadproof.extensions.drivers.outcome import Outcome, shown_by_drive, told_faster
 from roadproof.extensions.drivers.replay import Replayed, first_cut, replay
 from roadproof.extensions.drivers.sampled_replay import replay_samples
 from roadproof.extensions.traffic.evaluate.courses import BEGINS
@@ -271,3 +271,12 @@ def _decided(
 
 def _rounded(value: float | Fraction) -> Fraction:
     return Fraction(round(Fraction(value) * 10**_PLACES), 10**_PLACES)
+
+
+def said(decision: Decision) -> str:
+    """The side with its figures: ``preventable (3.2 m left)``, ``unpreventable (at 4.1 s, 9 m/s faster)``."""
+    if decision.gap is not None:
+        return f"{decision.side} ({decision.gap:g} m left)"
+    if decision.instant is not None and decision.speed is not None:
+        return f"{decision.side} (touches at {decision.instant:g} s, {told_faster(decision.speed)})"
+    return decision.side
