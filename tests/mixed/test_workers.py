@@ -11,9 +11,10 @@ import pytest
 
 from roadproof.errors import InputError, LostError, UsageError
 from roadproof.reasons import Reason, Why
-from roadproof.runtime import dask_executor, executors, process_pool, worker
+from roadproof.runtime import dask_executor, process_pool, worker
 from roadproof.runtime.budget import Budget, BudgetExceeded, Effort
-from roadproof.runtime.executors import Cluster, Executor, LostJob, Shard, answers_of, try_again
+from roadproof.runtime.dispatch import answers_of
+from roadproof.runtime.executors import Cluster, Executor, LostJob, Shard, try_again
 from roadproof.runtime.pool import in_order, work
 from roadproof.runtime.process_pool import answers_of as in_processes
 from roadproof.runtime.progress import Stage, begin, listening
@@ -217,8 +218,7 @@ def test_where_no_further_process_can_be_started_the_others_go_on() -> None:
 def test_a_cluster_is_not_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(dask_executor, "answers_of", lambda function, jobs, cluster: iter([(0, cluster)]))
     cluster = Cluster("tcp://host:1")
-    assert list(executors.answers_of(len, [[]], Executor(cluster=cluster))) == [(0, cluster)]
-    assert answers_of is not None
+    assert list(answers_of(len, [[]], Executor(cluster=cluster))) == [(0, cluster)]
 
 
 # --- shares ----------------------------------------------------------------------------------------

@@ -8,7 +8,8 @@ import pytest
 import roadproof as rp
 from roadproof.errors import InputError, UsageError
 from roadproof.extensions.maps.opendrive import read_map
-from roadproof.extensions.maps.selection import read_selection, select
+from roadproof.extensions.maps.selection import read_selection
+from roadproof.extensions.maps.stretch import select
 from roadproof.frontends.cli.main import main
 from roadproof.world.models import load_road
 

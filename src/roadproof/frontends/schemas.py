@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import get_args
 
 from roadproof.evidence.answer_files import JudgedFile, RefutationFile, Undecided
-from roadproof.evidence.answers import certificate, check, drive, library, none_within, shared, show, tree
+from roadproof.evidence.answers import certificate, drive, library, none_within, shared, show, tree
 from roadproof.evidence.codec import fields_of, notes_of
 from roadproof.evidence.json_schema import (
     COMMON,
@@ -19,6 +19,7 @@ from roadproof.evidence.json_schema import (
 )
 from roadproof.evidence.strict import JsonObject
 from roadproof.extension import imported, listed
+from roadproof.frontends.api import check_data
 from roadproof.library.motion import INDUCTIONS
 from roadproof.questions import overlap as overlap_question
 from roadproof.questions.compare import ComparisonData
@@ -33,7 +34,7 @@ CORE: Mapping[type, str] = {
     ComparisonData: "roadproof compare --json: which of two formulas implies the other",
     library.Answer: "roadproof list --json: what the library holds",
     show.Answer: "roadproof show --format json: a scenario, a definition or a formula",
-    check.Answer: "roadproof check --json: what evidence shows",
+    check_data.Answer: "roadproof check --json: what evidence shows",
     WitnessData: "roadproof witness --json: drives for scenarios and formulas",
     OrderData: "roadproof order --json: which scenarios imply which",
     OverlapData: "roadproof overlap --json: which scenarios hold together",

@@ -142,23 +142,6 @@ def try_again(
         yield from ((place, LostJob(lost(reason))) for reason in again.values())
 
 
-Job = TypeVar("Job")
-
-
 def is_fork_unsafe() -> bool:
     """Whether polars is imported here, whose threads may hold locks while a process forks."""
     return "polars" in sys.modules
-
-
-def answers_of(
-    function: Callable[[Job], Answer], jobs: Sequence[Job], hands: Executor, fresh: bool = False
-) -> Generator[tuple[int, Answer | LostJob], None, None]:
-    """``function`` of every job with its place, as ``answers_of`` of ``workers`` or ``cluster`` give it."""
-    if hands.cluster is None:
-        from roadproof.runtime import process_pool  # which imports this
-
-        yield from process_pool.answers_of(function, jobs, hands.processes, fresh)
-        return
-    from roadproof.runtime import dask_executor  # dask takes long to import
-
-    yield from dask_executor.answers_of(function, jobs, hands.cluster)

@@ -36,7 +36,8 @@ def work(
     """
     who = hands_of(hands)
     if len(jobs) > 1:
-        from roadproof.runtime.executors import LostJob, answers_of
+        from roadproof.runtime.dispatch import answers_of
+        from roadproof.runtime.executors import LostJob
         from roadproof.runtime.worker import is_worker
     if len(jobs) <= 1 or is_worker():
         yield from enumerate(map(function, jobs))

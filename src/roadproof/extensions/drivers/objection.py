@@ -7,6 +7,7 @@ where the model in place of SV does what is asked for.
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import FoundDrive, SearchProblem
@@ -14,12 +15,14 @@ from roadproof.extensions.drivers.driving import DriverSettings
 from roadproof.extensions.drivers.models import MODELS, course_in
 from roadproof.extensions.drivers.outcome import Outcome, Result, told_faster
 from roadproof.extensions.drivers.replay import replay
-from roadproof.extensions.drivers.restriction import Restriction
 from roadproof.library.bind import bind
 from roadproof.library.scenarios import number_in
 from roadproof.logic.formula import Application, Formula, subformulas
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import DriveJudge
+
+if TYPE_CHECKING:
+    from roadproof.extensions.drivers.restriction import Restriction
 
 _START = Fraction(0)
 _WANTED: Mapping[str, Result] = {"unpreventable": Result.COLLIDES, "preventable": Result.PREVENTED}
@@ -31,7 +34,7 @@ class Driven:
 
     search: Search
     problem: SearchProblem
-    restriction: Restriction
+    restriction: "Restriction"
 
     def objection(self, found: FoundDrive) -> str:
         """Return how the model ends in the drive, where that is not asked for; else nothing."""

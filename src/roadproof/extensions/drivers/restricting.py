@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, get_args
 
 from roadproof.errors import UsageError
 from roadproof.extensions.drivers.models import check_courses, check_formulas
-from roadproof.extensions.drivers.options import Prevention
 from roadproof.extensions.drivers.restriction import About, Restriction, Side, check_library, files_for
 from roadproof.frontends.api.definitions import Among, Definitions, What
 from roadproof.library.diagnose import checked_library
@@ -16,12 +15,14 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import subformulas
 
 if TYPE_CHECKING:
+    from roadproof.extensions.drivers.options import Prevention
+
     pass
 
 
 def restricted(
     home: Definitions,
-    given: Prevention,
+    given: "Prevention",
     among: Among = None,
     what: Sequence[What] | None = None,
     about: About = "scenarios",

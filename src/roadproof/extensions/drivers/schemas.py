@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
+from roadproof.extensions.drivers.preventable.boundary_file import BoundaryFile
 from roadproof.extensions.drivers.preventable.data import PreventableData
-from roadproof.extensions.drivers.preventable.plate import BoundaryFile
 
 TITLES: Mapping[type, str] = {
     PreventableData: (

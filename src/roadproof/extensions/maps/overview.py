@@ -7,7 +7,7 @@ from pathlib import Path
 
 from roadproof.errors import InputError
 from roadproof.extensions.maps.carriageway import DRIVEN, RAMPS
-from roadproof.extensions.maps.opendrive import MapRoad, RoadMap, read_map
+from roadproof.extensions.maps.opendrive import MapRoad, RoadMap
 from roadproof.extensions.maps.selection import LANELETS, Selection, Stretch, stretch_of
 from roadproof.world.length_error import LengthError, length_error
 from roadproof.world.reference_line import ReferenceLine
@@ -69,15 +69,6 @@ def stretches_of(path: Path, roads: RoadMap) -> tuple[MapStretch, ...]:
     for name, told in roads.refused.items():
         found.append(MapStretch(f"{path}#road={name}", "", Fraction(0), refused=told))
     return tuple(found)
-
-
-def all_stretches(path: Path) -> tuple[MapStretch, ...]:
-    """What can be selected of the map of a file. Raises ``InputError``."""
-    if path.suffix not in LANELETS:
-        return stretches_of(path, read_map(path))
-    from roadproof.extensions.maps.lanelet_overview import ways_of
-
-    return ways_of(path)
 
 
 def describe(select: str, name: str, direction: str, stretch: Stretch) -> MapStretch:

@@ -8,9 +8,11 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import road_said
 from roadproof.evidence.strict import JsonObject
 from roadproof.extensions.maps import answer as kept
-from roadproof.extensions.maps.overview import MapStretch, all_stretches, describe
+from roadproof.extensions.maps.opendrive import read_map
+from roadproof.extensions.maps.overview import MapStretch, describe, stretches_of
 from roadproof.extensions.maps.picture import draw_stretches
-from roadproof.extensions.maps.selection import read_selection, select
+from roadproof.extensions.maps.selection import LANELETS, read_selection
+from roadproof.extensions.maps.stretch import select
 from roadproof.runtime.files import write_whole
 from roadproof.runtime.version import VERSION
 from roadproof.world.models import load_road
@@ -82,3 +84,12 @@ def _said(stretch: MapStretch) -> kept.Stretch:
         lanelets=lanelets,
         refused=stretch.refused or None,
     )
+
+
+def all_stretches(path: Path) -> tuple[MapStretch, ...]:
+    """What can be selected of the map of a file. Raises ``InputError``."""
+    if path.suffix not in LANELETS:
+        return stretches_of(path, read_map(path))
+    from roadproof.extensions.maps.lanelet_overview import ways_of
+
+    return ways_of(path)

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from roadproof.errors import InputError, UsageError
 from roadproof.extensions.maps.carriageway import Carriageway, DirectedRoad, carriageway, driven
-from roadproof.extensions.maps.opendrive import MapRoad, RoadMap, read_map
+from roadproof.extensions.maps.opendrive import MapRoad, RoadMap
 from roadproof.world.lanelet_rules import check_lanelets
 from roadproof.world.reference_line import Part, ReferenceLine
 from roadproof.world.road import Lanelet
@@ -95,18 +95,6 @@ def _metres(text: str, key: str, value: str | None) -> Fraction | None:
         return None if value is None or len(value) > 40 else Fraction(value)
     except (ValueError, ZeroDivisionError):
         raise UsageError(f"road {text}: {key}={value}: a number of metres is needed") from None
-
-
-def select(path: Path, selection: Selection, origin: tuple[float, float] | None = None) -> Stretch:
-    """The stretch of a map. Raises ``InputError`` that names the file, the element and the rule.
-
-    ``origin``: the point in UTM (m) from which places count in Lanelet2, instead of the middle of the map.
-    """
-    if path.suffix in LANELETS:  # such maps need numpy
-        from roadproof.extensions.maps import lanelet_map
-
-        return lanelet_map.stretch_of(lanelet_map.read_lanelets(path, origin), selection)
-    return stretch_of(path, read_map(path), selection)
 
 
 def stretch_of(path: Path, known_map: RoadMap, selection: Selection) -> Stretch:

@@ -14,7 +14,6 @@ from roadproof.engines.solve.smt import Satisfiability as SolverAnswer
 from roadproof.engines.solve.smt import ask
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.answer import undecided
-from roadproof.evidence.answers import check as kept
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.codec import write
 from roadproof.evidence.files import files_of
@@ -23,6 +22,7 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.kernels import KernelName
 from roadproof.evidence.none_within import Derived, NoneWithinFile
 from roadproof.evidence.strict import JsonObject
+from roadproof.frontends.api import check_data as kept
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.settings import work_of
 from roadproof.frontends.api.table import Row, Table

@@ -17,6 +17,7 @@ from roadproof.extensions.drivers.lines import Side, boundary_text
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, CutIn, Manoeuvre, Plane, Values, start_of
 from roadproof.extensions.drivers.models import MODELS, ModelName, passed
 from roadproof.extensions.drivers.preventable.boundary import (
+    BesideBoundary,
     Labels,
     Truths,
     exact_truths,
@@ -25,8 +26,8 @@ from roadproof.extensions.drivers.preventable.boundary import (
     reading_of,
     side_file,
 )
-from roadproof.extensions.drivers.preventable.claims import Beside, Lines
-from roadproof.extensions.drivers.preventable.plate import BoundaryFile, Plate
+from roadproof.extensions.drivers.preventable.boundary_file import BoundaryFile
+from roadproof.extensions.drivers.preventable.plate import Plate
 from roadproof.extensions.drivers.stepped import beside_change, labels_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Specification
@@ -43,10 +44,9 @@ _NEAR = Fraction(1, 10)  # m from the boundary
 _PARTS = (Fraction(1, 2), Fraction(3, 8), Fraction(1, 4), Fraction(1, 8))  # of a span, from its lower end
 
 
-def settle_lines(claim: Claim) -> Answer:
+def settle_lines(claim: Claim, plate: Plate) -> Answer:
     """Return where on the lines of a plate the formula of a claim holds."""
-    assert isinstance(claim.mode, Lines)
-    home, plate = claim.home, claim.mode.plate
+    home = claim.home
     if MODELS[plate.model].is_stepped:
         lines = lines_of_labels(plate, _labels(claim, plate))
     else:
@@ -62,10 +62,9 @@ def settle_lines(claim: Claim) -> Answer:
     return Answer(claim, file)
 
 
-def settle_beside(claim: Claim) -> Answer:
+def settle_beside(claim: Claim, mode: BesideBoundary) -> Answer:
     """Return a drive on one side of the boundary of a plate, of what is preferred where there is one."""
-    mode, home, reading = claim.mode, claim.home, reading_of(claim)
-    assert isinstance(mode, Beside)
+    home, reading = claim.home, reading_of(claim)
     plane, model, side = mode.plate.plane, mode.plate.model, mode.side
     places: Iterable[dict[str, Fraction]]
     if MODELS[model].is_stepped:

@@ -6,7 +6,7 @@ makes from the place at which the drive of the file begins.
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
-from typing import TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.evidence.claim import Claim
@@ -31,16 +31,19 @@ from roadproof.extensions.drivers.manoeuvres import (
     signals_of,
 )
 from roadproof.extensions.drivers.models import MODELS, ModelName
-from roadproof.extensions.drivers.preventable.claims import Beside
-from roadproof.extensions.drivers.preventable.plate import BoundaryFile, Line, Plate
+from roadproof.extensions.drivers.preventable.plate import Line, Plate
 from roadproof.extensions.drivers.stepped import labels_of, places_of, spans_of
 from roadproof.library.bind import values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import LANE, SUBJECT
 from roadproof.library.specification import Library, Specification
+from roadproof.logic.formula import Formula
 from roadproof.semantics.exact.truth import TruthSet
 from roadproof.world.drive import Drive
 from roadproof.world.signals import STARTING
+
+if TYPE_CHECKING:
+    from roadproof.extensions.drivers.preventable.boundary_file import BoundaryFile
 
 Truths: TypeAlias = tuple[TruthSet, ...]
 Labels: TypeAlias = tuple[tuple[bool, ...], ...]
@@ -63,7 +66,7 @@ def lines_of_labels(plate: Plate, labels: Labels) -> tuple[Line, ...]:
     return tuple(Line.of(Drawn(row, x)) for row, x in zip(rows, spans, strict=True))
 
 
-def fault_of(file: BoundaryFile, library: Library) -> str:
+def fault_of(file: "BoundaryFile", library: Library) -> str:
     """Return where a file says otherwise than what is worked out from its plate, or nothing.
 
     Raises ``InputError`` and ``UsageError`` for a plate that is none.
@@ -126,13 +129,27 @@ def reading_of(claim: Claim) -> DriverSettings:
     return DriverSettings({x.name: x.value for x in claim.parameters}, dict(claim.home.options))
 
 
-def start_of(claim: Claim, file: DriveFile) -> tuple[dict[str, Fraction], str] | None:
+class BesideBoundary(Protocol):
+    """How a claim about a drive beside a boundary is asked (``claims.Beside``)."""
+
+    @property
+    def plate(self) -> Plate: ...
+
+    @property
+    def side(self) -> Side: ...
+
+    @property
+    def of(self) -> tuple[Formula, ...]: ...
+
+    @property
+    def of_texts(self) -> tuple[str, ...]: ...
+
+
+def start_of(claim: Claim, mode: BesideBoundary, file: DriveFile) -> tuple[dict[str, Fraction], str] | None:
     """Return from which initial values a drive begins that decides a claim, and what it is of besides.
 
     None: it is not the drive of the model from a place of the plate, or shows another side.
     """
-    mode = claim.mode
-    assert isinstance(mode, Beside)
     manoeuvre, model, reading = MANOEUVRES[mode.plate.manoeuvre], mode.plate.model, reading_of(claim)
     for at in _starts(mode.plate, file.drive):
         for also in ("", *mode.of_texts):

@@ -8,7 +8,8 @@ from roadproof.evidence.answer import Answer
 from roadproof.evidence.claim import Claim, OwnMode
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.extensions.drivers.preventable.plate import BoundaryFile, Plate
+from roadproof.extensions.drivers.preventable.boundary_file import BoundaryFile
+from roadproof.extensions.drivers.preventable.plate import Plate
 from roadproof.logic.formula import Formula
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
@@ -28,7 +29,7 @@ class Lines(OwnMode):
         """Return where on the lines of the plate the formula of a claim holds."""
         from roadproof.extensions.drivers.preventable.beside import settle_lines  # loads the models
 
-        return settle_lines(claim)
+        return settle_lines(claim, self.plate)
 
     def verdict_of(self, evidence: object) -> Verdict | None:
         """DERIVED where a file says so for the lines."""
@@ -54,7 +55,7 @@ class Beside(OwnMode):
         """Return a drive on the side of the boundary of the plate."""
         from roadproof.extensions.drivers.preventable.beside import settle_beside  # loads the models
 
-        return settle_beside(claim)
+        return settle_beside(claim, self)
 
     def verdict_of(self, evidence: object) -> Verdict | None:
         """WITNESSED by a drive."""
@@ -64,4 +65,4 @@ class Beside(OwnMode):
         """Return whether it is the drive of the model from a place of the plate."""
         from roadproof.extensions.drivers.preventable.boundary import start_of  # loads the models
 
-        return start_of(claim, drive) is not None
+        return start_of(claim, self, drive) is not None

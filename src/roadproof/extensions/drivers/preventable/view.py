@@ -13,7 +13,8 @@ from roadproof.extensions.drivers.manoeuvres import Manoeuvre, Values
 from roadproof.extensions.drivers.models import MODELS, ModelName
 from roadproof.extensions.drivers.preventable import data
 from roadproof.extensions.drivers.preventable.boundary import start_of
-from roadproof.extensions.drivers.preventable.plate import BoundaryFile
+from roadproof.extensions.drivers.preventable.boundary_file import BoundaryFile
+from roadproof.extensions.drivers.preventable.claims import Beside
 from roadproof.extensions.drivers.preventable.plate import Line as KeptLine
 from roadproof.extensions.drivers.stepped import TOLD
 from roadproof.questions.question import Place
@@ -138,7 +139,10 @@ def shown_by(side: Side, name: str, answer: Answer | None, is_there: bool) -> Sh
     """Return what an answer shows of a side, which a plate may not have."""
     if answer is None:
         return Shown(side, {}, reason=NO_REASON if is_there else Why.NO_PLACE(side), is_there=is_there)
-    start = None if answer.drive is None else start_of(answer.claim, answer.drive.file)
+    mode = answer.claim.mode
+    start = None
+    if answer.drive is not None and isinstance(mode, Beside):
+        start = start_of(answer.claim, mode, answer.drive.file)
     if start is None:
         return Shown(side, {}, reason=answer.reason, name=name, answer=answer)
     return Shown(side, start[0], answer.drive, answer.reason, start[1], name, answer)

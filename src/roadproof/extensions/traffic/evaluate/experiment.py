@@ -17,7 +17,8 @@ from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.extensions.traffic.formats.source import RecordingSource
 from roadproof.extensions.traffic.formats.sources import copies_among, find_sources
 from roadproof.extensions.traffic.formats.windows import WindowedRecording
-from roadproof.runtime.executors import Executor, LostJob, answers_of, is_fork_unsafe
+from roadproof.runtime.dispatch import answers_of
+from roadproof.runtime.executors import Executor, LostJob, is_fork_unsafe
 from roadproof.runtime.memory import keep_freed_memory
 from roadproof.runtime.worker import is_worker
 

@@ -17,7 +17,8 @@ from roadproof.errors import InputError
 from roadproof.extensions.maps.lines import even_line
 from roadproof.extensions.maps.network import MeasuredLane, Network
 from roadproof.extensions.maps.projections import UtmPoint
-from roadproof.extensions.maps.selection import Selection, Stretch, is_map, read_selection, select
+from roadproof.extensions.maps.selection import Selection, Stretch, is_map, read_selection
+from roadproof.extensions.maps.stretch import select
 from roadproof.extensions.maps.topology import MeasuredLanelet
 from roadproof.extensions.traffic.formats.clock import samples_in
 from roadproof.extensions.traffic.formats.line_coordinates import project
