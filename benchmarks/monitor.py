@@ -30,7 +30,7 @@ from roadproof.logic.formula import Application, Formula, subformulas
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.semantics.sampled import Batch, Monitor, compile
 from roadproof.semantics.sampled.boolean import unpack
-from roadproof.semantics.sampled.recursive import Trace, TraceReader, answer
+from roadproof.extensions.traffic.evaluate.recursive import Trace, TraceReader, answer
 from roadproof.semantics.sampled.semantics import interval_steps
 
 SCENARIOS = (1, 3, 4, 5, 6, 7, 8)

@@ -10,7 +10,6 @@ import pytest
 from asking import prove
 from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.minimal import simplest
-from roadproof.engines.search.points import Asking
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.drive_file import DriveFile
@@ -42,6 +41,7 @@ from roadproof.extensions.surveys.coverage.classes import (
 )
 from roadproof.extensions.surveys.coverage.found import FoundGap, SimpleDrives, Trials, replaced_by
 from roadproof.extensions.surveys.coverage.simple_drives import HORIZON, simple_drives
+from roadproof.extensions.surveys.extremes.points import Asking
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library, bundled_library

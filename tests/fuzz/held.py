@@ -16,6 +16,7 @@ from fuzz.definition import DT, Held, definition_of
 from logic.test_show import canonical
 from roadproof.engines.encode.problem import evaluate
 from roadproof.engines.encode.unroll import Grid, unroll
+from roadproof.extensions.traffic.evaluate.recursive import Trace, TraceReader
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
@@ -28,7 +29,6 @@ from roadproof.logic.show import text
 from roadproof.semantics.exact import judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.sampled import Batch, compile
-from roadproof.semantics.sampled.recursive import Trace, TraceReader
 from roadproof.world.models import load_road
 
 METRES, SPEED, ACCELERATION, SECONDS, PLAIN = (1, 0), (1, -1), (1, -2), (0, 1), (0, 0)

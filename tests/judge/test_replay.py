@@ -19,7 +19,9 @@ from roadproof.errors import UsageError
 from roadproof.evidence.countermodel import Countermodel, Instant
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.refutation import when_true
+from roadproof.extensions.pages.blame import Blame, blame
 from roadproof.extensions.traffic.evaluate.recheck import trace_of
+from roadproof.extensions.traffic.evaluate.recursive import TraceReader
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library, load_library
@@ -31,7 +33,6 @@ from roadproof.logic.rewrite import without_names
 from roadproof.logic.show import as_syntax, text
 from roadproof.semantics.exact import replay
 from roadproof.semantics.exact.algebraic import real_roots
-from roadproof.semantics.exact.blame import Blame, blame
 from roadproof.semantics.exact.exact import Judgement, judge, seconds
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.semantics.exact.truth import (
@@ -46,7 +47,6 @@ from roadproof.semantics.exact.truth import (
 )
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import compile
-from roadproof.semantics.sampled.recursive import TraceReader
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_vehicle
 from roadproof.world.motion import state_at

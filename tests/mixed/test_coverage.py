@@ -12,7 +12,6 @@ from typing import Any, TypeVar
 import pytest
 
 from roadproof.engines.search.batches import Engines
-from roadproof.engines.search.points import Asking
 from roadproof.errors import InputError
 from roadproof.evidence.answer import Judged, answer_data, read_answer, undecided
 from roadproof.evidence.certificate import read_certificate_data
@@ -46,6 +45,7 @@ from roadproof.extensions.surveys.coverage.looks import (
 )
 from roadproof.extensions.surveys.coverage.question import CoverageQuestion, gaps_of
 from roadproof.extensions.surveys.coverage.simple_drives import simple_drives
+from roadproof.extensions.surveys.extremes.points import Asking
 from roadproof.library.compose import both, either, in_some_lane, negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library

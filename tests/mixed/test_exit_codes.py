@@ -9,8 +9,6 @@ from typing import Any
 
 import pytest
 
-from roadproof.engines.search.extreme import Extreme
-from roadproof.engines.search.points import PointFinding
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.kernels import Word
 from roadproof.extensions.assurance.assuring import AssuranceReport
@@ -23,6 +21,8 @@ from roadproof.extensions.surveys.classifying import Classifications
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer, is_covered, verdict_on, with_counts
 from roadproof.extensions.surveys.covering import CODES
 from roadproof.extensions.surveys.explore.values import Boundary, ExplorationResult
+from roadproof.extensions.surveys.extremes.extreme import Extreme
+from roadproof.extensions.surveys.extremes.points import PointFinding
 from roadproof.extensions.traffic.evaluating import Evaluation
 from roadproof.extensions.traffic.monitoring import MonitorAnswer
 from roadproof.frontends.api.comparing import ComparisonAnswer

@@ -6,12 +6,12 @@ from fractions import Fraction
 import numpy as np
 from hypothesis import strategies as st
 
+from roadproof.extensions.traffic.evaluate.recursive import Trace, TraceReader
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Application, Formula, subformulas
 from roadproof.semantics.sampled import Batch, Monitor, compile
 from roadproof.semantics.sampled.answers import Convention
-from roadproof.semantics.sampled.recursive import Trace, TraceReader
 
 DT = Fraction(1, 25)
 IN_LANE = f.Some("l", f.Domain("lanelets", "L"), f.Occupies("SV", "l"))

@@ -14,6 +14,7 @@ from definition import Definition
 from examples import some
 from monitoring.cases import DT, IN_LANE, ON_MAIN, formulas, interval, intervals, random_batch, trace_of
 from roadproof.errors import InputError
+from roadproof.extensions.traffic.evaluate.recursive import Trace, TraceReader
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, subformulas
@@ -22,7 +23,6 @@ from roadproof.semantics.sampled import Batch, boolean, compile
 from roadproof.semantics.sampled.answers import Convention
 from roadproof.semantics.sampled.arithmetic import Program
 from roadproof.semantics.sampled.batch import Array, steps_of
-from roadproof.semantics.sampled.recursive import Trace, TraceReader
 from roadproof.world.drive import Drive, Motion, Piece
 
 S = t.Signal("s", "SV")

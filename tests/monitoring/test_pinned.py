@@ -17,6 +17,7 @@ from monitoring.cases import (
     random_traffic,
     trace_of,
 )
+from roadproof.extensions.traffic.evaluate.recursive import TraceReader, answer
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.loading import bundled_library
@@ -26,7 +27,6 @@ from roadproof.logic.formula import Application, Formula, subformulas
 from roadproof.logic.rewrite import with_values
 from roadproof.semantics.sampled import compile
 from roadproof.semantics.sampled.answers import Convention
-from roadproof.semantics.sampled.recursive import TraceReader, answer
 
 conventions = st.sampled_from(["truncated", "clip"])
 quick = settings(max_examples=some(400), deadline=None, derandomize=True)

@@ -1,7 +1,7 @@
 """An independent simulation of places of plates, stepped at a clock's rate: any parameters, all at once.
 
-It knows nothing of formulas, and shares nothing with roadproof.extensions.drivers. Every value is an array, one number
-for each place. Names are those of parameters of ``driver.spec`` and of initial values.
+It knows nothing of formulas, and shares nothing with the driver models of roadproof. Every value is an array, one
+number for each place. Names are those of parameters of ``driver.spec`` and of initial values.
 """
 
 from collections.abc import Mapping

@@ -15,18 +15,7 @@ from hypothesis import strategies as st
 from roadproof.engines.encode.unroll import common_step
 from roadproof.engines.search import known_drive, placing, stages
 from roadproof.engines.search.batches import Engines
-from roadproof.engines.search.bracket import Bracket, range_of, starting_ranges
-from roadproof.engines.search.extreme import (
-    PROOF,
-    Extreme,
-    ExtremeQuestion,
-    ExtremeSearch,
-    find_extreme,
-    settled_by,
-)
-from roadproof.engines.search.measure import Sense, between, read_measure
 from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.points import PointFinding, Points, Remembered
 from roadproof.engines.search.question import SearchOptions, SearchProblem, Setting, durations, pose
 from roadproof.engines.search.search import Attempt
 from roadproof.engines.search.stages import MOST_STEPS, dt_of, fit_grid, look, stand_ins, values_of
@@ -39,6 +28,17 @@ from roadproof.extensions.surveys.explore.asking import Explorable, Variable
 from roadproof.extensions.surveys.explore.data import AskedFormula, AskedVariation, Exploring, SearchedPlace
 from roadproof.extensions.surveys.explore.question import ExploreQuestion
 from roadproof.extensions.surveys.explore.values import ExplorationResult
+from roadproof.extensions.surveys.extremes.bracket import Bracket, range_of, starting_ranges
+from roadproof.extensions.surveys.extremes.extreme import (
+    PROOF,
+    Extreme,
+    ExtremeQuestion,
+    ExtremeSearch,
+    find_extreme,
+    settled_by,
+)
+from roadproof.extensions.surveys.extremes.measure import Sense, between, read_measure
+from roadproof.extensions.surveys.extremes.points import PointFinding, Points, Remembered
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.loading import bundled_library

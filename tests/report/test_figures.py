@@ -13,10 +13,7 @@ from typing import Any
 import pytest
 
 from report.edges import cut_off
-from roadproof.engines.search.extreme import Extreme
-from roadproof.engines.search.measure import read_measure
 from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.points import PointFinding
 from roadproof.errors import InputError
 from roadproof.extensions.surveys.classify.cells import Cell
 from roadproof.extensions.surveys.classify.classes import Class
@@ -26,12 +23,17 @@ from roadproof.extensions.surveys.classify.question import ClassesView
 from roadproof.extensions.surveys.classify.traffic_shares import Shares
 from roadproof.extensions.surveys.explore.asking import Explorable, Variable
 from roadproof.extensions.surveys.explore.values import Boundary, ExplorationResult
+from roadproof.extensions.surveys.extremes.extreme import Extreme
+from roadproof.extensions.surveys.extremes.measure import read_measure
+from roadproof.extensions.surveys.extremes.points import PointFinding
 from roadproof.extensions.surveys.report.classify import as_table, draw_classes, summary
 from roadproof.extensions.surveys.report.explore import as_text, draw_exploration, show
 from roadproof.extensions.traffic.evaluate.questions import Settings, default_settings
 from roadproof.extensions.traffic.evaluate.totals import Totals, begin_totals
 from roadproof.extensions.traffic.report.figures import draw_figures, write_report
 from roadproof.extensions.traffic.report.research_questions import answer_questions
+from roadproof.extensions.traffic.report.tables import LOOKS, Table, as_csv, as_latex, as_markdown
+from roadproof.extensions.traffic.report.tables import as_text as table_text
 from roadproof.extensions.traffic.report.traffic import (
     COMPARISON,
     MARK,
@@ -51,8 +53,6 @@ from roadproof.frontends.report.figures import (
     name_rows,
     settle,
 )
-from roadproof.frontends.report.tables import LOOKS, Table, as_csv, as_latex, as_markdown
-from roadproof.frontends.report.tables import as_text as table_text
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_query
 from roadproof.library.scenarios import COMPARISON as DETECTORS

@@ -9,11 +9,11 @@ from functools import cached_property
 from itertools import combinations
 
 from roadproof.extensions.traffic.evaluate.questions import Settings
+from roadproof.extensions.traffic.evaluate.recursive import Trace, TraceReader
 from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.library.elaborate import read_claim
 from roadproof.logic.formula import Formula, transform
 from roadproof.logic.rewrite import with_values, without_names
-from roadproof.semantics.sampled.recursive import Trace, TraceReader
 
 Row = tuple[int, int, int | None, str, int, int, int, str, int]
 """sv, pov, pov2, lane, start_frame, end_frame, min_danger, set, scenario."""

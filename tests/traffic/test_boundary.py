@@ -26,6 +26,7 @@ from roadproof.extensions.traffic.evaluate.questions import (
     default_settings,
 )
 from roadproof.extensions.traffic.evaluate.recheck import recheck
+from roadproof.extensions.traffic.evaluate.recursive import TraceReader
 from roadproof.extensions.traffic.evaluate.results import as_json, uncertain_pairs
 from roadproof.extensions.traffic.evaluate.sectors import ANYWHERE, is_possible, sectors_of
 from roadproof.extensions.traffic.evaluate.totals import add_findings, begin_totals
@@ -51,7 +52,6 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula
 from roadproof.semantics.sampled.compiled import compile as compile_formulas
-from roadproof.semantics.sampled.recursive import TraceReader
 from traffic.drives import braking, cut_in, swerve
 from traffic.make_recording import LANES, Track, cruise, make_recording
 from traffic.planar import commonroad_of

@@ -27,13 +27,13 @@ from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording, e
 from roadproof.extensions.traffic.evaluate.matching import Match
 from roadproof.extensions.traffic.evaluate.questions import Questions, Settings, ask
 from roadproof.extensions.traffic.evaluate.recheck import recheck, trace_of
+from roadproof.extensions.traffic.evaluate.recursive import TraceReader as Plain
 from roadproof.extensions.traffic.evaluate.traces import gather
 from roadproof.extensions.traffic.formats.recording import Integers, Recording
 from roadproof.extensions.traffic.formats.write_highd import write_highd
 from roadproof.extensions.traffic.simulate.simulate import simulate
 from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.frontends.cli.main import main
-from roadproof.semantics.sampled.recursive import TraceReader as Plain
 from traffic.make_recording import Track, cruise, make_recording
 from traffic.test_windows import cut
 

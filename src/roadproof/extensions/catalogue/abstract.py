@@ -10,7 +10,6 @@ from dataclasses import field, replace
 from functools import cached_property
 
 from roadproof.engines.search.impossible import at_start
-from roadproof.engines.search.points import Asking
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.claim import Claim, Exists, claim_of, valid_under
 from roadproof.evidence.judged import JudgedDrive
@@ -19,6 +18,7 @@ from roadproof.extensions.catalogue.candidates import CandidateDrives
 from roadproof.extensions.catalogue.entries import Abstract, Freedom
 from roadproof.extensions.catalogue.fact import Fact
 from roadproof.extensions.catalogue.showing import names_shown, shown_by
+from roadproof.extensions.surveys.extremes.points import Asking
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, implication
 from roadproof.library.scenarios import Scenario, applied, name_of

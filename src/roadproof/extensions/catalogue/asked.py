@@ -12,10 +12,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TypeAlias
 
-from roadproof.engines.search.points import Remembered
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.extensions.catalogue.gaps import GapKinds, gap_kinds
 from roadproof.extensions.surveys.classify.classes import Class, Classes, Group, Plan
+from roadproof.extensions.surveys.extremes.points import Remembered
 from roadproof.library import scenarios as s
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, negation

@@ -20,6 +20,7 @@ from roadproof.extensions.catalogue.entries import Abstract, Catalogue, Concrete
 from roadproof.extensions.catalogue.fact import Fact, scenarios_shown
 from roadproof.extensions.catalogue.gaps import PREFIX, GapKinds, gap_kinds
 from roadproof.extensions.catalogue.kept import KeptRequest
+from roadproof.extensions.catalogue.nested import Nested
 from roadproof.extensions.catalogue.ranges import Reach, ReachBatch, reaches_of
 from roadproof.extensions.catalogue.reading import read_tests
 from roadproof.extensions.catalogue.showing import ConcreteAnswer
@@ -31,7 +32,6 @@ from roadproof.extensions.surveys.classify.classes import Classes, plan_of
 from roadproof.extensions.surveys.classify.division import divide
 from roadproof.extensions.traffic.evaluate.decisions import Drivers, drivers_in
 from roadproof.questions.basis import Basis
-from roadproof.questions.nested import Nested
 from roadproof.questions.question import Answers, Batch, Place, seen, walk
 from roadproof.reasons import Reason
 from roadproof.runtime.budget import Work

@@ -10,10 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import get_args
 
-from roadproof.engines.search.extreme import PROOF, ExtremeQuestion, ExtremeSearch
-from roadproof.engines.search.measure import Sense, read_measure
 from roadproof.engines.search.placing import judged_as
-from roadproof.engines.search.points import Asking, Points, Remembered
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import load_drive
@@ -21,6 +18,9 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.catalogue.asked import Questions
 from roadproof.extensions.catalogue.fact import Fact
 from roadproof.extensions.catalogue.showing import ConcreteAnswer, signal_of
+from roadproof.extensions.surveys.extremes.extreme import PROOF, ExtremeQuestion, ExtremeSearch
+from roadproof.extensions.surveys.extremes.measure import Sense, read_measure
+from roadproof.extensions.surveys.extremes.points import Asking, Points, Remembered
 from roadproof.library.compose import both
 from roadproof.library.elaborate import read_term
 from roadproof.library.specification import Query, Specification

@@ -10,7 +10,6 @@ from functools import cache, cached_property
 from typing import get_args
 
 from roadproof.engines.search.placing import judged_as
-from roadproof.engines.search.points import Asking
 from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.claim import Claim, Exists, claim_of
@@ -22,6 +21,7 @@ from roadproof.extensions.catalogue.entries import Abstract
 from roadproof.extensions.catalogue.fact import Fact
 from roadproof.extensions.catalogue.showing import names_shown
 from roadproof.extensions.drivers.restriction import Restriction, Side, check_library, files_for, said_in
+from roadproof.extensions.surveys.extremes.points import Asking
 from roadproof.extensions.traffic.evaluate.decisions import Decision, Drivers
 from roadproof.library.compose import both
 from roadproof.library.loading import load_library

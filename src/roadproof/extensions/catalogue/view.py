@@ -12,6 +12,7 @@ from roadproof.extensions.catalogue.driver_sides import decisions_of, read_side_
 from roadproof.extensions.catalogue.entries import Abstract, Catalogue, Concrete, Request
 from roadproof.extensions.catalogue.fact import Fact, scenarios_shown
 from roadproof.extensions.catalogue.kept import Figure
+from roadproof.extensions.catalogue.nested import Nested
 from roadproof.extensions.catalogue.ranges import Span, spans_of
 from roadproof.extensions.catalogue.showing import ConcreteAnswer
 from roadproof.extensions.catalogue.tested import Targets, figures, figures_beside, targets_of, tested
@@ -23,7 +24,6 @@ from roadproof.extensions.surveys.coverage.question import CoverageView
 from roadproof.extensions.traffic.evaluate.decisions import Decision, Drivers, decide_formula
 from roadproof.library.bind import values_with
 from roadproof.questions.basis import Basis
-from roadproof.questions.nested import Nested
 from roadproof.questions.question import Answers, Place, heading_of
 from roadproof.runtime.records import dataclass
 from roadproof.world.unread import left_out_in, unread_of_road

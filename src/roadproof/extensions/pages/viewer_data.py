@@ -16,6 +16,7 @@ from roadproof.evidence.drive_file import DriveFile, drive_data
 from roadproof.extensions.drivers.words import words_of_parts
 from roadproof.extensions.exchange.export.subject import span_of
 from roadproof.extensions.pages import viewer_document as document
+from roadproof.extensions.pages.blame import blame
 from roadproof.frontends.report.drive_data import GRAIN, Direction, dangers_of, distances_of, vehicles_of
 from roadproof.library.bind import bind, values_with
 from roadproof.library.scenario_references import read_query
@@ -29,7 +30,6 @@ from roadproof.logic.rewrite import bounds_of, intervals_of
 from roadproof.logic.show import as_syntax, text
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.algebraic import approximate
-from roadproof.semantics.exact.blame import blame
 from roadproof.semantics.exact.exact import Judgement, judge
 from roadproof.semantics.exact.robust import robustness
 from roadproof.semantics.exact.truth import TruthSet

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Unpack
 
-from roadproof.engines.search.measure import Sense
 from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import SearchOptions
 from roadproof.errors import UsageError
@@ -14,6 +13,7 @@ from roadproof.extensions.surveys.explore.asking import ask_for
 from roadproof.extensions.surveys.explore.data import AskedFormula, AskedVariation, Exploring, SearchedPlace
 from roadproof.extensions.surveys.explore.question import ExploreQuestion, ExploreView
 from roadproof.extensions.surveys.explore.values import ExplorationResult
+from roadproof.extensions.surveys.extremes.measure import Sense
 from roadproof.extensions.surveys.keywords import ExploreKeywords
 from roadproof.extensions.surveys.report import explore as report
 from roadproof.extensions.surveys.settings import Explore

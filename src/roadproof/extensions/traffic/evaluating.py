@@ -37,6 +37,7 @@ from roadproof.extensions.traffic.keywords import EvaluateKeywords
 from roadproof.extensions.traffic.report.cases import recording_cases
 from roadproof.extensions.traffic.report.figures import draw_figures, remove_report, write_report
 from roadproof.extensions.traffic.report.research_questions import facts
+from roadproof.extensions.traffic.report.tables import as_text
 from roadproof.extensions.traffic.report.traffic import comparison_table, drivers_table, results_tables
 from roadproof.extensions.traffic.settings import Evaluate
 from roadproof.frontends.api.answer import Picture, picture
@@ -44,7 +45,6 @@ from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.cases import Case
-from roadproof.frontends.report.tables import as_text
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import exact
 from roadproof.library.scenarios import COMPARISON, MIN_DANGER

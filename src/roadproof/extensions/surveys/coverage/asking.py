@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from roadproof.engines.search.placing import with_moved
-from roadproof.engines.search.points import Asking
 from roadproof.evidence.answer import Judged
 from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.claim import HELP, valid_under
@@ -23,6 +22,7 @@ from roadproof.extensions.surveys.coverage.looks import (
     Placed,
 )
 from roadproof.extensions.surveys.coverage.simple_drives import HORIZON
+from roadproof.extensions.surveys.extremes.points import Asking
 from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass

@@ -10,11 +10,11 @@ from fractions import Fraction
 from itertools import product
 from typing import Literal, TypeAlias
 
-from roadproof.engines.search.measure import Measure, Sense, read_measure
 from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.points import Point
 from roadproof.engines.search.question import Setting
 from roadproof.errors import UsageError
+from roadproof.extensions.surveys.extremes.measure import Measure, Sense, read_measure
+from roadproof.extensions.surveys.extremes.points import Point
 from roadproof.library.bind import Number, exact
 from roadproof.library.compose import always, comparison, with_parts
 from roadproof.library.specification import Library, Query, unknown

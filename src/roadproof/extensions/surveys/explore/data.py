@@ -4,15 +4,15 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Annotated, Final, Literal
 
-from roadproof.engines.search.extreme import Extreme
-from roadproof.engines.search.measure import Sense
-from roadproof.engines.search.points import PointFinding
 from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.drive import KeptRoad
 from roadproof.evidence.claim import Engine
 from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 from roadproof.extensions.surveys.explore.asking import Explorable
 from roadproof.extensions.surveys.explore.values import Boundary, ExplorationResult
+from roadproof.extensions.surveys.extremes.extreme import Extreme
+from roadproof.extensions.surveys.extremes.measure import Sense
+from roadproof.extensions.surveys.extremes.points import PointFinding
 from roadproof.questions.question import Place
 from roadproof.reasons import NO_REASON
 from roadproof.runtime.records import dataclass

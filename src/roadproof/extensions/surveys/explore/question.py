@@ -5,10 +5,7 @@ from dataclasses import field
 from functools import cached_property
 from typing import Any, ClassVar
 
-from roadproof.engines.search.extreme import PROOF
-from roadproof.engines.search.measure import Sense
 from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.points import Asking, Remembered
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.codec import read
@@ -22,6 +19,9 @@ from roadproof.extensions.surveys.explore.data import (
     exploration_data,
 )
 from roadproof.extensions.surveys.explore.values import ExplorationResult, explore
+from roadproof.extensions.surveys.extremes.extreme import PROOF
+from roadproof.extensions.surveys.extremes.measure import Sense
+from roadproof.extensions.surveys.extremes.points import Asking, Remembered
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import Scenario, applied, numbers_of
 from roadproof.questions.basis import Basis

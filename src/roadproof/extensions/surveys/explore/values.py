@@ -9,12 +9,12 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 
-from roadproof.engines.search.extreme import PRECISION, Extreme, ExtremeQuestion, ExtremeSearch
-from roadproof.engines.search.measure import Measure, between
-from roadproof.engines.search.points import Asking, Point, PointFinding, Points, Remembered
 from roadproof.engines.search.stages import dt_of, duration_parameters
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.surveys.explore.asking import Explorable
+from roadproof.extensions.surveys.extremes.extreme import PRECISION, Extreme, ExtremeQuestion, ExtremeSearch
+from roadproof.extensions.surveys.extremes.measure import Measure, between
+from roadproof.extensions.surveys.extremes.points import Asking, Point, PointFinding, Points, Remembered
 from roadproof.logic.rewrite import is_cubic_state
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict

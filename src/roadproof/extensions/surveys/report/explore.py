@@ -7,10 +7,10 @@ from itertools import pairwise
 from textwrap import wrap
 from typing import Any, TypeAlias
 
-from roadproof.engines.search.extreme import Extreme
-from roadproof.engines.search.points import PointFinding
 from roadproof.extensions.surveys.explore.asking import Explorable, Variable
 from roadproof.extensions.surveys.explore.values import Boundary, ExplorationResult
+from roadproof.extensions.surveys.extremes.extreme import Extreme
+from roadproof.extensions.surveys.extremes.points import PointFinding
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import draw_cell, legend_beside, make_figure, name_cells
 from roadproof.frontends.report.numbers import took

@@ -1,1 +1,1 @@
-"""."""
+"""What answers about recordings and traces say, as JSON has it."""

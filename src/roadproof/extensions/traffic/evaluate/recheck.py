@@ -9,13 +9,13 @@ from roadproof.extensions.traffic.evaluate.evaluate import Findings
 from roadproof.extensions.traffic.evaluate.foretelling import label_of, last_common, scene_in
 from roadproof.extensions.traffic.evaluate.matching import Match
 from roadproof.extensions.traffic.evaluate.questions import MonitorKey, Questions, of_three
+from roadproof.extensions.traffic.evaluate.recursive import ReadAs, Trace, TraceReader
 from roadproof.extensions.traffic.evaluate.traces import OTHER_LANE, gather_one
 from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.library.scenarios import LANE, PAIR, TRIPLE
 from roadproof.logic.formula import Formula, transform
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import Monitor
-from roadproof.semantics.sampled.recursive import ReadAs, Trace, TraceReader
 
 
 def recheck(recording: Recording, questions: Questions, findings: Findings) -> Iterator[str]:

@@ -1,1 +1,1 @@
-"""."""
+"""Answers about traffic to look at."""

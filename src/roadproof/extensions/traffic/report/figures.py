@@ -9,6 +9,7 @@ from typing import Any
 from roadproof.extensions.traffic.evaluate.results import decimal, words_in
 from roadproof.extensions.traffic.evaluate.totals import Row, Totals
 from roadproof.extensions.traffic.report.research_questions import answer_questions
+from roadproof.extensions.traffic.report.tables import LOOKS
 from roadproof.extensions.traffic.report.traffic import (
     MARK,
     comparison_table,
@@ -19,7 +20,6 @@ from roadproof.extensions.traffic.report.traffic import (
     results_tables,
 )
 from roadproof.frontends.report.figures import as_bytes, count_axis, hide_frame, legend_beside, make_figure
-from roadproof.frontends.report.tables import LOOKS
 from roadproof.library.words import Called
 from roadproof.runtime.files import cannot_write, write_whole
 

@@ -15,7 +15,7 @@ from roadproof.extensions.traffic.evaluate.foretelling import LABELS
 from roadproof.extensions.traffic.evaluate.results import decimal, foretold_rows, words_in
 from roadproof.extensions.traffic.evaluate.sectors import ANYWHERE
 from roadproof.extensions.traffic.evaluate.totals import Row, Totals
-from roadproof.frontends.report.tables import Table
+from roadproof.extensions.traffic.report.tables import Table
 from roadproof.library.scenarios import DETECTORS, Metric
 from roadproof.library.words import Called
 from roadproof.runtime.records import dataclass

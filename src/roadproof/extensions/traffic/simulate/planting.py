@@ -16,6 +16,7 @@ from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.extensions.traffic.evaluate.one_trace import OneTrace, cut_trace
 from roadproof.extensions.traffic.evaluate.recheck import trace_of
+from roadproof.extensions.traffic.evaluate.recursive import TraceReader
 from roadproof.extensions.traffic.evaluate.results import MATCH_COLUMNS
 from roadproof.extensions.traffic.formats.clock import Rate
 from roadproof.extensions.traffic.formats.highd import LOWER, UPPER
@@ -36,7 +37,6 @@ from roadproof.library.scenario_references import own_names
 from roadproof.library.specification import Library
 from roadproof.library.words import words_of
 from roadproof.semantics.sampled.batch import steps_of
-from roadproof.semantics.sampled.recursive import TraceReader
 from roadproof.world.drive import Drive
 from roadproof.world.motion import state_at, states_at
 from roadproof.world.signals import RECORDED, SIZES

@@ -6,9 +6,9 @@ from itertools import product
 from typing import TypeAlias, assert_never
 
 from roadproof.engines.encode.place import span
-from roadproof.engines.search.measure import between
-from roadproof.engines.search.points import PointFinding
 from roadproof.engines.search.question import SearchProblem
+from roadproof.extensions.surveys.extremes.measure import between
+from roadproof.extensions.surveys.extremes.points import PointFinding
 from roadproof.logic import terms as t
 from roadproof.logic.terms import Term
 from roadproof.verdict import Verdict

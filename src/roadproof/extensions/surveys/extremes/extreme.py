@@ -11,16 +11,16 @@ from functools import cached_property
 
 from roadproof.engines.encode.along import names_places
 from roadproof.engines.search.batches import Engines
-from roadproof.engines.search.bracket import Bracket, range_of, starting_ranges
 from roadproof.engines.search.known_drive import offered
-from roadproof.engines.search.measure import Measure
 from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.points import Asking, Point, PointFinding, Points, Remembered, T
 from roadproof.engines.search.question import pose
 from roadproof.engines.search.stages import dt_of, staged_claim, values_of
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, judge_file
+from roadproof.extensions.surveys.extremes.bracket import Bracket, range_of, starting_ranges
+from roadproof.extensions.surveys.extremes.measure import Measure
+from roadproof.extensions.surveys.extremes.points import Asking, Point, PointFinding, Points, Remembered, T
 from roadproof.library.bind import bind
 from roadproof.library.compose import with_parts
 from roadproof.library.specification import Query

@@ -1,0 +1,1 @@
+"""Least and greatest values of terms over drives, and values at which a drive appears."""
