@@ -10,6 +10,7 @@ EXTENSION = Extension(
         "drivers",
         "pages",
     ),
+    incubating=("requirements in the formats of StrictDoc and Doorstop",),
     functions={
         "assurance": "assuring:assurance",
         "bundle": "bundling:bundle",

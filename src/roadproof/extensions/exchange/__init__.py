@@ -9,6 +9,7 @@ EXTENSION = Extension(
         "maps",
         "traffic",
     ),
+    incubating=("storyboards of OpenSCENARIO, which are run here",),
     functions={"export": "exporting:export", "compile": "compiling:compile"},
     completions=dict.fromkeys(("--to", "--format"), "completion:formats"),
     formats=("commonroad:FORMAT", "openscenario:FORMAT", "osi:FORMAT"),

@@ -12,6 +12,7 @@ EXTENSION = Extension(
         "surveys",
         "traffic",
     ),
+    incubating=("animations as GIF and MP4",),
     functions={"page": "reporting:page", "atlas": "atlas.atlas:atlas"},
     animations={"svg": "animation:SVG", "gif": "animation:GIF", "mp4": "animation:MP4"},
     completions={"--animate": "completion:formats"},

@@ -9,6 +9,7 @@ EXTENSION = Extension(
         "drivers",
         "maps",
     ),
+    incubating=("recordings that are larger than memory",),
     functions={
         "monitor": "monitoring:monitor",
         "trace": "monitoring:trace",

@@ -21,3 +21,8 @@ class Show(Readings):
 
     expand: bool = option(False, "--expand", "write every definition out, as one formula")
     format: str = output("text", "--format", "default: text", choices=("text", "latex", "json"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Extensions(Answered):
+    """Options of ``roadproof extensions``."""
