@@ -53,7 +53,7 @@ evidence-check: $(READY)
 
 # proofs/kernel/ocaml/checker.ml again, after a change of the checkers in proofs/kernel: needs coqc.
 extract: $(READY)
-	PYTHONPATH=tests $(BIN)/python -m kernel.extract
+	PYTHONPATH=tests $(BIN)/python -m extensions.kernel.extract
 
 # Every command of the README, typed into the login shell of a user who has nothing but a fresh clone.
 fresh: $(READY)
@@ -65,7 +65,7 @@ man: $(READY)
 
 # The studio in a real browser: Debian's Chromium (apt-get install chromium fonts-dejavu-core), or CHROMIUM=/path/to/it.
 browser: $(READY)
-	ROADPROOF_BROWSER=1 $(BIN)/python -m pytest -q -rs tests/studio/test_browser.py tests/studio/test_first_impression.py tests/report tests/atlas $(ARGS)
+	ROADPROOF_BROWSER=1 $(BIN)/python -m pytest -q -rs tests/extensions/pages/studio/test_browser.py tests/extensions/pages/studio/test_first_impression.py tests/extensions/pages/report tests/extensions/pages/atlas $(ARGS)
 
 # Every figure of the documents again; ARGS=--update puts the pages right, --only PATTERN asks for less.
 findings: $(READY)
@@ -73,7 +73,7 @@ findings: $(READY)
 
 # Exported drives, put to clients that nobody here wrote (docs/how-to/interop.md); environments under out/interop.
 interop: $(READY)
-	PYTHONPATH=tests $(BIN)/python -m interop $(ARGS)
+	PYTHONPATH=tests $(BIN)/python -m extensions.exchange.interop $(ARGS)
 
 # The wheel and the source archive in out/release, installed into every Python that is found; ARGS=--lowest too.
 release: $(READY)

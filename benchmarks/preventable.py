@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-from preventing import stepping
-from preventing.labels import labels
-from preventing.read import boundary
+from extensions.drivers import stepping
+from extensions.drivers.labels import labels
+from extensions.drivers.read import boundary
 from roadproof.extensions.drivers.manoeuvres import CUT_IN
 
 TABLE = Path(__file__).parents[1] / "docs/data/labels.csv"

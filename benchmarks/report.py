@@ -34,7 +34,7 @@ def ready(page: Path) -> int:
 def draw(target: Path) -> None:
     """The matrix of scenarios 1, 4, 5 and 6, and the drive behind the cell of 1 and 5."""
     sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-    from studio.browser import browsing
+    from extensions.pages.studio.browser import browsing
 
     with tempfile.TemporaryDirectory() as name, browsing() as browser:
         folder = Path(name)

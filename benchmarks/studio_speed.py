@@ -15,8 +15,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-from studio.browser import Tab, browsing
-from studio.serving import running, workers_of
+from extensions.pages.studio.browser import Tab, browsing
+from extensions.pages.studio.serving import running, workers_of
 
 LIMITS = {
     "page ready": 1.5,

@@ -19,7 +19,7 @@ from roadproof.extensions.traffic.simulate.simulate import simulate
 from roadproof.extensions.traffic.simulate.traffic import Traffic
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-from traffic.reference import Reference, Row
+from extensions.traffic.reference import Reference, Row
 
 
 def slow_matches(recording: Recording, findings: Findings, reference: Reference) -> set[Row]:

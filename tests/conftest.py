@@ -21,12 +21,12 @@ import pytest
 from hypothesis import settings
 
 import roadproof
+from extensions.pages.studio.browser import browsing
 from lengthy import COLLECTED, LENGTHY
 from once import ask_once
 from one_process import work_here
 from roadproof.runtime.memory import collect_rarely
 from sharing import HOMES
-from studio.browser import browsing
 
 os.environ["ROADPROOF_KNOWN"] = "off"
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

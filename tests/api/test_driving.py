@@ -13,8 +13,8 @@ import polars as pl
 import pytest
 
 import roadproof as rp
-from exporting.kept import kept, subject
-from exporting.kept import motion as motion_from
+from extensions.exchange.exporting.kept import kept, subject
+from extensions.exchange.exporting.kept import motion as motion_from
 from planting import plant
 from roadproof.engines.prove.motion import prove_of_motions
 from roadproof.engines.search import minimal

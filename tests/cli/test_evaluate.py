@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from extensions.traffic.faults import plant_fault
 from roadproof.evidence.drive_file import load_drive
 from roadproof.extensions.traffic import monitoring as traces
 from roadproof.extensions.traffic.evaluate import results, totals
@@ -24,7 +25,6 @@ from roadproof.extensions.traffic.simulate.simulate import simulate
 from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.samples import csv_of
-from traffic.faults import plant_fault
 
 ROADPROOF = Path(sys.executable).parent / "roadproof"
 TABLES = {f"{x}.{e}" for x in ("results", "comparison") for e in ("txt", "md", "csv", "tex")}

@@ -30,7 +30,7 @@ from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.completion import _VALUES
 from roadproof.frontends.cli.help import command_parser
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.cli.overview import COMMANDS, jobs
+from roadproof.frontends.cli.overview import COMMANDS, groups
 from roadproof.frontends.cli.overview import COMMANDS as SUB_COMMANDS
 from roadproof.frontends.settings import keywords_file
 from roadproof.frontends.settings.flags import add_flags, is_rare, read_keywords
@@ -292,7 +292,7 @@ def test_the_usual_options_of_witness_fit_a_screen(
 
 def test_every_command_stands_below_a_job_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     shown = printed(capsys, "--help")
-    for job, names in jobs().items():
+    for job, names in groups().items():
         assert f"\n{job}:\n  {names[0]} " in shown
     for name, summary in COMMANDS.items():
         assert len(re.findall(rf"^  {name} +{re.escape(summary)}$", shown, re.MULTILINE)) == 1

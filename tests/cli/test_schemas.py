@@ -428,7 +428,7 @@ def test_every_command_is_asked() -> None:
             "completion",
             "cache",
             "atlas",
-            "bundle",  # tests/bundling
+            "bundle",  # tests/extensions/assurance/bundling
         )  # which have no JSON, or are asked elsewhere
     }
 

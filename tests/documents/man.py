@@ -9,7 +9,7 @@ from pathlib import Path
 import roadproof
 from documents.reference import EXIT_CODES, help_of, spellings
 from roadproof.frontends.cli.help import command_parser
-from roadproof.frontends.cli.overview import COMMANDS, jobs
+from roadproof.frontends.cli.overview import COMMANDS, groups
 
 _HEADED = re.compile(r"(?P<title>[a-z][a-z ]*):\n(?P<body> .*)", re.DOTALL)
 
@@ -25,10 +25,10 @@ def _program() -> str:
         *(".SH SYNOPSIS", r".B roadproof", "COMMAND [OPTION ...] [ARGUMENT ...]"),
         ".SH COMMANDS",
     ]
-    for job, names in jobs().items():
+    for job, names in groups().items():
         lines.append(f".SS {_plain(job)}")
         for name in names:
-            lines += [".TP", rf".BR roadproof\-{name} (1)", _plain(COMMANDS[name])]
+            lines += [".TP", rf".BR roadproof\-{name} (1)", _plain(COMMANDS[name].summary)]
     lines += [".SH EXIT STATUS"]
     for code, meaning in EXIT_CODES.items():
         lines += [".TP", f".B {int(code)}", _plain(meaning)]
@@ -41,7 +41,7 @@ def _command(name: str) -> str:
     blocks = re.split(r"\n\s*\n", (parser.epilog or "").strip("\n"))
     headed = [found for block in blocks if (found := _HEADED.fullmatch(block))]
     lines = [
-        *_head(f"roadproof-{name}", COMMANDS[name]),
+        *_head(f"roadproof-{name}", COMMANDS[name].summary),
         *(".SH SYNOPSIS", rf".B roadproof {name}", _plain(f"[OPTION ...] {needed}")),
         ".SH OPTIONS",
     ]

@@ -18,7 +18,7 @@ from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.api.phrases import Phrase
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.cli.help import command_parser
-from roadproof.frontends.cli.overview import COMMANDS, jobs
+from roadproof.frontends.cli.overview import COMMANDS, groups
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import number_in
 from roadproof.library.specification import Specification
@@ -52,15 +52,16 @@ def commands() -> str:
         "same in a terminal, and `--help` the usual options. All commands share their "
         "[exit codes](exit-codes.md).",
         "",
-        "| job | command | purpose |",
+        "| for | command | purpose |",
         "|---|---|---|",
     ]
-    for job, names in jobs().items():
+    for job, names in groups().items():
         for name in names:
             lines.append(
-                f"| {job if name == names[0] else ''} | [{name}](#{name}) | {_cell(COMMANDS[name])} |"
+                f"| {job if name == names[0] else ''} | [{name}](#{name}) | {_cell(COMMANDS[name].summary)} |"
             )
-    for name, summary in COMMANDS.items():
+    for name, command in COMMANDS.items():
+        summary = command.summary
         lines += ["", f"## {name}", "", f"{summary[0].upper()}{summary[1:]}.", "", *_options(name)]
     return "\n".join(lines) + "\n"
 

@@ -105,7 +105,7 @@ SAME_ANSWERS = {
         "formulas: twice": "a formula that no entry points to",
         "times: turned around": "the order of a list of names",
         "instances: turned around": "the order of a list of instances",
-        "tableau": "the proof for Coq, which a solver is not asked about; see tests/kernel/test_refused.py",
+        "tableau": "the proof for Coq, which a solver is not asked about (tests/extensions/kernel)",
     },
     "C4-scenario-04-base.json": {
         "scenario: removed": "it names none",

@@ -2,9 +2,9 @@
 
 from hypothesis import strategies as st
 
+from extensions.kernel.raw import random_formula
+from extensions.kernel.reading import answers, compared
 from fuzz.case import Disagreement
-from kernel.raw import random_formula
-from kernel.reading import answers, compared
 
 BATCH = 500  # formulas in a file: Coq loads its library once
 CHUNK = 4

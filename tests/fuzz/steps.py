@@ -2,10 +2,10 @@
 
 from hypothesis import strategies as st
 
+from extensions.kernel.reading import answers, judged
 from fuzz import held
 from fuzz.case import Disagreement
 from fuzz.definition import DT, Held
-from kernel.reading import answers, judged
 from roadproof.library.bind import bind
 from roadproof.logic.formula import Formula
 from roadproof.semantics.exact import judge

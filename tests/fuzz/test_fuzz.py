@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from hypothesis import Phase, find, settings
 
+from extensions.kernel.needs import needs_coq
+from extensions.kernel.raw import random_formula
 from fuzz import case, claims, drives, held, printed, search, steps, texts, truths
 from fuzz.run import READERS, run
-from kernel.needs import needs_coq
-from kernel.raw import random_formula
 from roadproof.engines.encode import unroll
 from roadproof.engines.search import question
 from roadproof.extensions.kernel.printer import Printer

@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, Phase, assume, find, given, settings
 from hypothesis import strategies as st
 
 from examples import some
+from extensions.drivers.read import boundary
 from judge.cases import (
     comparisons,
     drives,
@@ -21,7 +22,6 @@ from judge.cases import (
 )
 from judge.pinning import disagreement_on_drive, disagreement_on_sets
 from planting import plant
-from preventing.read import boundary
 from roadproof.errors import InputError, UsageError
 from roadproof.extensions.drivers.manoeuvres import CUT_IN, along_line
 from roadproof.library.bind import bind, default_values

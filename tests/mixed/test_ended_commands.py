@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from mixed.test_build_results import agree
+from extensions.assurance.test_build_results import agree
 from roadproof.errors import InputError, LostError, MissingSolverError, SharedError, UsageError
 from roadproof.frontends.cli.help import command_parser, written_files
 from roadproof.frontends.cli.main import COMMANDS, main

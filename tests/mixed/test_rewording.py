@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from mixed.test_catalogue_verdicts import (
+from extensions.catalogue.test_catalogue_verdicts import (
     FOUR,
     GOOD,
     ONE,

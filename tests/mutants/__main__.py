@@ -36,7 +36,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--only", default="", help="folders or files of the package, such as judge/,kernel/")
     parser.add_argument(
-        "--tests", default="", help="folders or files of tests to record, such as tests/kernel/"
+        "--tests", default="", help="folders or files of tests to record, such as tests/extensions/kernel/"
     )
     parser.add_argument("--most", type=int, default=None, help="stop after so many faults")
     parser.add_argument("--jobs", type=int, default=2)

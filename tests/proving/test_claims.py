@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import roadproof as rp
 from cli.test_schemas import validator
 from evidence.probe import probe
-from kernel.needs import needs_coq
+from extensions.kernel.needs import needs_coq
 from proving.claims import (
     BEYOND,
     INVALID,

@@ -11,7 +11,7 @@ import pytest
 import roadproof as rp
 from asking import prove
 from cli.test_schemas import validator
-from kernel.needs import needs_coq
+from extensions.kernel.needs import needs_coq
 from roadproof.engines.prove import lasso, prover
 from roadproof.engines.prove.induction import inductions
 from roadproof.engines.search.settle import settle

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from kernel.needs import needs_coq
+from extensions.kernel.needs import needs_coq
 from roadproof.engines.prove import prover
 from roadproof.engines.prove.doubt import Stop
 from roadproof.engines.prove.prover import prove

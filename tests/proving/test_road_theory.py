@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kernel.needs import needs_coq
+from extensions.kernel.needs import needs_coq
 from planting import plant
 from proving.on_roads import random_road
 from roadproof.engines.prove.prover import prove

@@ -10,7 +10,7 @@ import pytest
 
 import roadproof as rp
 from asking import prove
-from preventing.read import specification as driver_specification
+from extensions.drivers.read import specification as driver_specification
 from proving.claims import settle, specification
 from proving.on_roads import is_road, neighbours
 from roadproof.engines.prove import countermodel, prover

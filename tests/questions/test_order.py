@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from report.edges import cut_off
+from extensions.pages.report.edges import cut_off
 from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.known_drive import recast
 from roadproof.evidence.answer import Answer, undecided

@@ -111,7 +111,7 @@ UNCHANGED: Mapping[str, str] = {
     "timeout": "the clock ends a search; what it cuts off is in doubt, and no doubt is kept",
     "kernel": "a kernel is asked about the evidence that an answer has, wherever that is from",
     "strict": "swept where recordings are the question",
-    "road": "swept with maps, in tests/traffic",
+    "road": "swept with maps, in tests/extensions/traffic",
 }
 """Options that the sweep leaves out where a question has no other value for them, with the reason."""
 DRIVER = {

@@ -11,6 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import roadproof as rp
+from roadproof.extensions.catalogue import settings as catalogues
+from roadproof.extensions.drivers import settings as drivers
+from roadproof.extensions.surveys import settings as surveys
 from roadproof.extensions.traffic import settings as recordings
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.settings import questions, studies
@@ -126,13 +129,13 @@ EVERY: Mapping[str, tuple[Ask, type[Settings]]] = {
     "witness_scenarios": (witness_scenarios, questions.Witness),
     "prevented": (prevented, questions.Witness),
     "overlap": (overlap, studies.Overlap),
-    "explore": (explore, questions.Explore),
-    "preventable": (preventable, studies.Preventable),
+    "explore": (explore, surveys.Explore),
+    "preventable": (preventable, drivers.Preventable),
     "order": (order, studies.Order),
-    "redundancy": (redundancy, studies.Redundancy),
-    "classify": (classify, studies.Classify),
-    "coverage": (coverage, studies.Coverage),
-    "catalogue": (catalogue, studies.Catalogue),
+    "redundancy": (redundancy, surveys.Redundancy),
+    "classify": (classify, surveys.Classify),
+    "coverage": (coverage, surveys.Coverage),
+    "catalogue": (catalogue, catalogues.Catalogue),
     "evaluate": (evaluate, recordings.Evaluate),
     "compare": (compare, questions.Compare),
 }

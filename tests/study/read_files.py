@@ -3,11 +3,11 @@
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from extensions.traffic.make_recording import Track, make_recording
+from extensions.traffic.planar import commonroad_of
+from extensions.traffic.test_topology import with_ramps
 from roadproof.extensions.maps.network import ZONES_ENDING
 from roadproof.extensions.traffic.formats.samples import ROAD_ENDING
-from traffic.make_recording import Track, make_recording
-from traffic.planar import commonroad_of
-from traffic.test_topology import with_ramps
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
 RATE, SECONDS, BRAKING = 10, 6, 4.0

@@ -59,25 +59,37 @@ def _summary(file: str) -> str:
 COMMANDS = _find_commands()
 
 
+def groups() -> Mapping[str, list[str]]:
+    """The names of commands: of the core, then by those whom they are for."""
+    found: dict[str, list[str]] = {"core": [name for name, x in COMMANDS.items() if x.extension is None]}
+    for audience in AUDIENCES:
+        mine = {name: x.extension for name, x in COMMANDS.items() if x.extension is not None}
+        found[f"for {audience}"] = [name for name, x in mine.items() if x.record.audience == audience]
+    return {title: names for title, names in found.items() if names}
+
+
 def overview() -> str:
     """The help of the program."""
-    core = [f"  {name:<12} {x.summary}" for name, x in COMMANDS.items() if x.extension is None]
-    blocks = ["usage: roadproof COMMAND [OPTION ...] [ARGUMENT ...]", _HEAD, "\n".join(["core:", *core])]
-    width = max((len(", ".join(x)) for x in _of_extensions().values()), default=0)
-    for audience in AUDIENCES:
-        lines = [
-            f"  {', '.join(names):<{width}}  {installed()[name].record.title}"
-            for name, names in _of_extensions().items()
-            if installed()[name].record.audience == audience
-        ]
-        blocks += ["\n".join([f"for {audience}:", *lines])] if lines else []
+    core, *others = groups().items()
+    lines = [f"  {name:<12} {COMMANDS[name].summary}" for name in core[1]]
+    blocks = [
+        "usage: roadproof COMMAND [OPTION ...] [ARGUMENT ...]",
+        _HEAD,
+        "\n".join([f"{core[0]}:", *lines]),
+    ]
+    added = {title: _by_extension(names) for title, names in others}
+    width = max((len(names) for told in added.values() for names in told.values()), default=0)
+    for title, told in added.items():
+        lines = [f"  {names:<{width}}  {installed()[name].record.title}" for name, names in told.items()]
+        blocks.append("\n".join([f"{title}:", *lines]))
     return "\n\n".join([*blocks, _FOOT])
 
 
-def _of_extensions() -> Mapping[str, list[str]]:
-    """The commands of each extension that has any."""
-    found: dict[str, list[str]] = {}
-    for name, x in COMMANDS.items():
-        if x.extension is not None:
-            found.setdefault(x.extension.name, []).append(name)
+def _by_extension(names: list[str]) -> Mapping[str, str]:
+    """Commands by the extension that adds them, in one text."""
+    found: dict[str, str] = {}
+    for name in names:
+        x = COMMANDS[name].extension
+        assert x is not None
+        found[x.name] = f"{found[x.name]}, {name}" if x.name in found else name
     return found
