@@ -1,4 +1,4 @@
-"""Files of other tools: drives and monitors in C are written, OpenSCENARIO, OSI and CommonRoad are read."""
+"""Files of other tools, for those who use them: drives and monitors are written, recordings are read."""
 
 from roadproof.extension import Extension
 

@@ -1,4 +1,4 @@
-"""Results to look at: pages, moving pictures and a studio in the browser."""
+"""Results to look at, for those who would rather look than read: pages, pictures, a studio."""
 
 from roadproof.extension import Extension
 
