@@ -20,13 +20,13 @@ NEW_NODE = ("Temporal: TypeAlias = Until | Eventually | Always", "@node\nclass A
 READERS_OF_NODES = {
     *(
         "semantics/exact/exact.py",
-        "semantics/exact/blame.py",
+        "extensions/pages/blame.py",
         "semantics/exact/robust.py",
         "logic/initial_conditions.py",
-        "frontends/report/viewer_data.py",
-        "semantics/sampled/recursive.py",
+        "extensions/pages/viewer_data.py",
+        "extensions/traffic/evaluate/recursive.py",
         "semantics/sampled/semantics.py",
-        "semantics/streaming/plan.py",
+        "extensions/exchange/streaming/plan.py",
         "engines/encode/unroll.py",
     ),
     *(
@@ -37,8 +37,12 @@ READERS_OF_NODES = {
     ),
     "library/bind.py",
     *("logic/formula.py", "logic/rewrite.py", "logic/motion.py", "logic/restore.py"),
-    *("evidence/derivations/derive.py", "evidence/kernel/printer.py", "evidence/kernel/constructors.py"),
-    *("analysis/catalogue/nearest.py", "evidence/periodic.py"),
+    *(
+        "extensions/kernel/derivations/derive.py",
+        "extensions/kernel/printer.py",
+        "extensions/kernel/constructors.py",
+    ),
+    *("extensions/catalogue/nearest.py", "evidence/periodic.py"),
 }
 
 
@@ -59,6 +63,7 @@ def apply(copy, changes):
 def add_survey(copy):
     for name, text in SURVEY.items():
         assert not (copy / name).exists()
+        (copy / name).parent.mkdir(parents=True, exist_ok=True)
         (copy / name).write_text(text)
 
 
@@ -97,7 +102,9 @@ def test_an_option_touches_two_files(copy):
         roadproof(copy, 0, "witness --help"),
         re.M,
     )
-    remade = run(copy, "from roadproof.frontends.settings import keywords_file as k; print(k.text(), end='')")
+    remade = run(
+        copy, "from roadproof.frontends.settings import keywords_file as k; print(k.text(k.CORE), end='')"
+    )
     assert "\n".join(remade) + "\n" == (copy / "src/roadproof/frontends/settings/keywords.py").read_text()
 
 
@@ -105,18 +112,24 @@ NOTE = (
     '    note: str = option("", "--note TEXT", help="print TEXT first", group="output", keyword=False)\n\n\n'
 )
 IN_OTHERS = {
-    "compare": ('folder_for("certificates and drive files")\n', "4 4"),
-    "explore": ("pictures_of(command_line_only=True)\n", "4 --vary minSafe=0:1 --steps 2"),
+    "compare": (
+        *("frontends/settings/questions.py", "frontends/cli/compare.py"),
+        *('folder_for("certificates and drive files")\n', "4 4"),
+    ),
+    "redundancy": (
+        *("extensions/surveys/settings.py", "extensions/surveys/commands/redundancy.py"),
+        *('effort: float = groups.effort_for("a drive", 20.0)\n', "--among 4 --effort 1"),
+    ),
 }
-"""By question: how the last line of its options ends, and what is asked."""
+"""By question: where its options and its command are, how its last option ends, and what is asked."""
 
 
 @pytest.mark.parametrize("command", IN_OTHERS)
 def test_an_option_of_other_questions_touches_two_files_too(copy, command):
-    last, asked = IN_OTHERS[command]
-    home, before = copy / "src/roadproof/frontends", f"read_definitions(args, {command.capitalize()})\n"
-    forge(home / "settings/questions.py", (last, last + NOTE))
-    forge(home / f"cli/{command}.py", (before, before + "    print(args.note, flush=True)\n"))
+    options, file, last, asked = IN_OTHERS[command]
+    home, before = copy / "src/roadproof", "def run(args: argparse.Namespace) -> int:\n"
+    forge(home / options, (last, last + NOTE))
+    forge(home / file, (before, before + "    print(args.note, flush=True)\n"))
     told = roadproof(copy, 0, f"{command} {asked} --note between").splitlines()
     assert told[0] == "between"
     assert len(told) > 1
@@ -144,7 +157,7 @@ FIELD = {
             '    lines.append(f"of one set: {sum(x.a.set_name == x.b.set_name for x in verdicts)}")\n',
         ),
     ),
-    "frontends/report/page/templates/overlap.html": (
+    "extensions/pages/page/templates/overlap.html": (
         ("{{ p.reason(x.reason) }}\n", "<p>of one set: {{ x.one_set }}</p>\n"),
     ),
 }
@@ -330,7 +343,7 @@ SLOW = """set mine extends base "scenario 4 is 6 for the slow" {
 ASK = "alone --among 4,6 --set mine --spec mine.spec --effort 3 --jobs 1 --out X"
 FROM_PYTHON = """
 import roadproof as rp
-from roadproof.questions.alone import Alone
+from roadproof.extensions.alone.question import Alone
 found = rp.ask(Alone, "4,6", rp.load("mine", specs=["mine.spec"]), out="X", jobs=1, say=print)
 print({name: str(x) for name, x in found.verdicts.items()}, len(found.evidence), int(found.exit_code))
 """
@@ -345,15 +358,15 @@ def forge(path, *changes):
     return text
 
 
-def test_a_survey_is_two_new_files_that_need_no_line_elsewhere(copy):
-    folders = ("questions", "frontends/cli")
-    assert list(SURVEY) == [f"src/roadproof/{folder}/alone.py" for folder in folders]
+def test_a_survey_is_an_extension_that_needs_no_line_elsewhere(copy):
+    files = ("__init__.py", "question.py", "commands/alone.py")
+    assert list(SURVEY) == [f"src/roadproof/extensions/alone/{file}" for file in files]
     add_survey(copy)
     for words in (["check"], ["format", "--check"]):
         done = begin(copy, "-m", "ruff", *words, *SURVEY)
         assert done.returncode == 0, done.stdout
     help_of_all = roadproof(copy, 0, "--help")
-    assert re.search("alone +which scenarios can hold while no other one does", help_of_all)
+    assert re.search("alone +Scenarios that hold while no other one does", help_of_all)
     assert "roadproof alone --among 1,3-8" in roadproof(copy, 0, "alone --help")
 
 

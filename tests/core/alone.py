@@ -18,7 +18,18 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("z3-solver", "numpy", "scipy", "highspy", "clarabel", "cvxpy", "sympy", "lark")
 """What the core is installed with, and what these need."""
 FOR_TESTS = ("pytest", "hypothesis")
-FOLDERS = ("encode", "evidence", "judge", "logic", "proving", "questions", "searching", "solve", "spec", "world")
+FOLDERS = (
+    "encode",
+    "evidence",
+    "judge",
+    "logic",
+    "proving",
+    "questions",
+    "searching",
+    "solve",
+    "spec",
+    "world",
+)
 """The folders of tests that are about the core."""
 COMMANDS = (
     "prove --out proofs",
@@ -63,7 +74,12 @@ def make(folder: Path, more: tuple[str, ...] = ()) -> dict[str, str]:
             if top not in ("..", "__pycache__") and target.exists() and not (site / top).exists():
                 (site / top).symlink_to(target)
     paths = os.pathsep.join([str(folder / "src"), str(site)])
-    return {**os.environ, "PYTHONPATH": paths, "PYTHONNOUSERSITE": "1", "XDG_CACHE_HOME": str(folder / "cache")}
+    return {
+        **os.environ,
+        "PYTHONPATH": paths,
+        "PYTHONNOUSERSITE": "1",
+        "XDG_CACHE_HOME": str(folder / "cache"),
+    }
 
 
 def run(folder: Path, environment: dict[str, str], *words: str) -> subprocess.CompletedProcess[str]:

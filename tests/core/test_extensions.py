@@ -11,7 +11,9 @@ from roadproof.extension import AUDIENCES, GROUP, Extension, added, entries, imp
 from roadproof.frontends.cli.overview import COMMANDS
 
 ROOT = Path(__file__).parents[2]
-SLOTS = [x.name for x in fields(Extension) if x.name not in ("title", "audience", "label", "needs", "incubating")]
+SLOTS = [
+    x.name for x in fields(Extension) if x.name not in ("title", "audience", "label", "needs", "incubating")
+]
 
 
 @pytest.fixture(scope="module")

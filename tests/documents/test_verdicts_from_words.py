@@ -10,11 +10,11 @@ import pytest
 SOURCE = Path(__file__).parents[2] / "src/roadproof"
 WORDS = {"label", "told", "reason", "claim", "remark", "message"}
 EXCEPTIONS = {
-    "recordings/evaluate/experiment.py": 1,  # the words of an error get their place once
-    "analysis/catalogue/listing.py": 1,  # a range in a list that a user writes
-    "semantics/streaming/c_files.py": 1,  # the identifier of a monitor in C
-    "questions/coverage/asking.py": 1,  # a reason that names its road names it once
-    "analysis/assurance/limits.py": 3,  # open: limits of a search as evidence states them
+    "extensions/traffic/evaluate/experiment.py": 1,  # the words of an error get their place once
+    "extensions/catalogue/listing.py": 1,  # a range in a list that a user writes
+    "extensions/exchange/streaming/c_files.py": 1,  # the identifier of a monitor in C
+    "extensions/surveys/coverage/asking.py": 1,  # a reason that names its road names it once
+    "extensions/assurance/case/limits.py": 3,  # open: limits of a search as evidence states them
 }
 """How many matches on words each file may have."""
 MATCHES = {"rpartition", "startswith", "endswith", "find", "index", "match", "search", "fullmatch"}
@@ -52,7 +52,7 @@ def test_no_source_decides_by_words() -> None:
     found = Counter(
         str(path.relative_to(SOURCE))
         for path in sorted(SOURCE.rglob("*.py"))
-        if SOURCE / "recordings/formats" not in path.parents
+        if SOURCE / "extensions/traffic/formats" not in path.parents
         for _ in verdicts_from_words(path.read_text("utf-8"))
     )
     assert found == EXCEPTIONS

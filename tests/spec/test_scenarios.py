@@ -209,7 +209,7 @@ HOME = "library/scenarios.py"
 ROLES = {*PAIR, *TRIPLE}
 WORDS = {
     "__init__.py",
-    "frontends/api/recordings.py",
+    "extensions/traffic/evaluating.py",
 }  # what is exported from Python is named; so are columns of frames
 ROWS = 8
 """How many rows the table of formulas has, which other scenarios repeat."""

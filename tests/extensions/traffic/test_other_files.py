@@ -100,11 +100,19 @@ def test_xml_in_utf_16_is_read(tmp_path: Path) -> None:
 
 DECODES = re.compile(r"""read_text\(["']utf-8["']\)|\.decode\(["']utf-8["']\)|\.read_text\(\)""")
 OWN = {
-    *("runtime/files.py", "runtime/pins.py", "recordings/formats/content.py"),
+    *("runtime/files.py", "extensions/assurance/pins.py", "extensions/traffic/formats/content.py"),
     *("library/loading.py", "logic/grammar.py", "drivers/lemmas.py", "engines/prove/properties.py"),
-    *("frontends/report/page/templates.py", "frontends/report/viewer_page.py"),
-    *("frontends/api/bundling.py", "frontends/api/completing.py", "frontends/atlas/atlas.py"),
-    *("frontends/studio/pages.py", "frontends/studio/examples.py", "recordings/evaluate/results.py"),
+    *("extensions/pages/page/templates.py", "extensions/pages/viewer_page.py"),
+    *(
+        "extensions/assurance/bundling.py",
+        "extensions/catalogue/writing.py",
+        "extensions/pages/atlas/atlas.py",
+    ),
+    *(
+        "extensions/pages/studio/pages.py",
+        "extensions/pages/studio/examples.py",
+        "extensions/traffic/evaluate/results.py",
+    ),
 }
 """Files that decode what is roadproof's own, and the one decoder."""
 
