@@ -3,32 +3,26 @@
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Unpack
+from typing import TYPE_CHECKING, Unpack
 
 from roadproof.errors import UsageError
-from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.traffic.formats.table import Frame, frame_of
 from roadproof.extensions.traffic.formats.write_highd import write_highd
 from roadproof.extensions.traffic.keywords import SimulateKeywords
 from roadproof.extensions.traffic.settings import Simulate
-from roadproof.extensions.traffic.simulate.planting import (
-    PLANTED_COLUMNS,
-    Truth,
-    lane_width,
-    plant_drives,
-    rows_of,
-)
 from roadproof.extensions.traffic.simulate.simulate import markings_of
 from roadproof.extensions.traffic.simulate.simulate import simulate as simulate_one
 from roadproof.extensions.traffic.simulate.traffic import Traffic, road_of
 from roadproof.frontends.report.samples import road_toml
 from roadproof.frontends.report.sheet import csv_text
 from roadproof.frontends.settings.option import takes
-from roadproof.library.loading import bundled_library
 from roadproof.runtime import pool
 from roadproof.runtime.files import write_whole
 from roadproof.runtime.records import dataclass
+
+if TYPE_CHECKING:
+    from roadproof.evidence.drive_file import DriveFile
+    from roadproof.extensions.traffic.simulate.planting import Truth
 
 
 @dataclass(frozen=True)
@@ -40,11 +34,13 @@ class Simulation:
 
     folder: Path
     recordings: int
-    planted: tuple[Truth, ...] = ()
+    planted: "tuple[Truth, ...]" = ()
     left_out: tuple[str, ...] = ()
 
     def to_frame(self) -> Frame:
         """A row for each planted drive, as in planted.csv."""
+        from roadproof.extensions.traffic.simulate.planting import PLANTED_COLUMNS, rows_of
+
         rows = rows_of(self.planted)
         return frame_of([dict(zip(PLANTED_COLUMNS, row, strict=True)) for row in rows])
 
@@ -59,7 +55,7 @@ def simulate(out: str | Path, **options: Unpack[SimulateKeywords]) -> Simulation
     some). Raises ``InputError``, ``UsageError``.
     """
     given = Simulate.of(options)
-    drives = tuple(x.file if isinstance(x, JudgedDrive) else x for x in given.plant)
+    drives: tuple[DriveFile, ...] = tuple(vars(x).get("file", x) for x in given.plant)
     traffic = Traffic(
         seconds=given.seconds,
         lanes=given.lanes,
@@ -76,6 +72,8 @@ def simulate(out: str | Path, **options: Unpack[SimulateKeywords]) -> Simulation
     if drives and given.ramp != "none":
         raise UsageError(f"ramp={given.ramp}: drives are planted on main roads only; omit ramp or plant")
     if drives:
+        from roadproof.extensions.traffic.simulate.planting import lane_width  # loads the judge
+
         traffic = replace(traffic, lane_width=lane_width(drives))
     folder = Path(out)
     make = partial(_make_one, folder, traffic, given.seed, drives)
@@ -89,19 +87,24 @@ def simulate(out: str | Path, **options: Unpack[SimulateKeywords]) -> Simulation
         truths += made
         left_out |= dict.fromkeys(missing)
     if drives:
+        from roadproof.extensions.traffic.simulate.planting import PLANTED_COLUMNS, rows_of
+
         table = csv_text(PLANTED_COLUMNS, rows_of(truths))
         write_whole(folder / "planted.csv", table.encode())
     return Simulation(folder, given.recordings, tuple(truths), tuple(left_out))
 
 
 def _make_one(
-    out: Path, traffic: Traffic, seed: int, drives: tuple[DriveFile, ...], number: int
-) -> tuple[list[Truth], list[str]]:
+    out: Path, traffic: Traffic, seed: int, drives: "tuple[DriveFile, ...]", number: int
+) -> "tuple[list[Truth], list[str]]":
     """Simulate, plant and write one recording; what was planted, and what could not be."""
     recording = simulate_one(traffic, seed, number)
     truths: list[Truth] = []
     left_out: list[str] = []
     if drives:
+        from roadproof.extensions.traffic.simulate.planting import plant_drives
+        from roadproof.library.loading import bundled_library
+
         recording, truths, left_out = plant_drives(recording, drives, bundled_library())
     write_highd(recording, out)
     if traffic.ramp != "none":

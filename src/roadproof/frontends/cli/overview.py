@@ -2,9 +2,9 @@
 
 import os
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from roadproof.extension import AUDIENCES, Installed, installed
-from roadproof.runtime.records import dataclass
 
 _ORDER = ("list", "show", "prove", "witness", "compare", "overlap", "order", "check")
 _HEAD = "Compiles driving scenarios to proofs, witnesses and monitors."

@@ -4,16 +4,18 @@ import csv
 import io
 import json
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from roadproof.errors import InputError
-from roadproof.evidence.drive_file import DriveFile
 from roadproof.frontends.report.xml import decimal
-from roadproof.library.roles import vehicle_order
 from roadproof.world.drive import Motion, value_at
 from roadproof.world.lanelet_rules import check_lanelets, shared_boundaries
 from roadproof.world.motion import states_at
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.signals import RECORDED, SIZES, Kind
+
+if TYPE_CHECKING:
+    from roadproof.evidence.drive_file import DriveFile
 
 
 def road_toml(road: Road, s: Fraction = Fraction(0), d: Fraction = Fraction(0)) -> str:
@@ -55,8 +57,10 @@ def _number(value: Fraction) -> str:
 HEADER = ("time", "vehicle", *RECORDED, *SIZES)
 
 
-def csv_of(file: DriveFile, rate: int = 25) -> str:
+def csv_of(file: "DriveFile", rate: int = 25) -> str:
     """The drive of a drive file, ``rate`` samples a second up to its horizon."""
+    from roadproof.library.roles import vehicle_order  # who writes a road needs no library
+
     vehicles = {name: file.drive.vehicles[name] for name in vehicle_order(file.drive.vehicles)}
     times = [Fraction(k, rate) for k in range(int(file.horizon * rate) + 1)]
     samples = {name: [*states_at(motion, times)] for name, motion in vehicles.items()}
