@@ -1,6 +1,6 @@
 """``python -m core.alone FOLDER``: the core without its extensions, in a tree and with packages of its own.
 
-FOLDER gets the package without ``extensions``, and links to the packages that the core needs and to no others.
+FOLDER gets the package without ``extensions``, and links to the packages that the core needs, to no others.
 There the core proves the template properties, finds a drive for each scenario, decides all pairs, orders the
 scenarios, and checks all of it; its tests run, too, with ``--tests``.
 """

@@ -39,7 +39,7 @@ from roadproof.world.models import read_toml
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
-SCRIPT = Path(__file__).parents[1] / "report" / "bundle" / "check.sh"
+SCRIPT = Path(__file__).parent / "bundle_files" / "check.sh"
 PAGE, SUMS, MANIFEST, REQUIREMENTS = "index.html", "SHA256SUMS", "manifest.json", "requirements.txt"
 _Command: TypeAlias = Literal["assurance", "trace"]
 _TIME = 0  # when every file in a bundle was changed, so that the same content is the same bundle

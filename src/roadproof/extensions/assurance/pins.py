@@ -71,7 +71,7 @@ def own_wheel(folder: Path) -> Path:
 
     Raises ``MissingSolverError``.
     """
-    checkout = Path(__file__).parents[3]
+    checkout = Path(__file__).parents[4]
     is_checkout = (checkout / "pyproject.toml").is_file()
     what = str(checkout) if is_checkout else f"{NAME}=={metadata.version(NAME)}"
     run_pip("wheel", "--no-deps", "--wheel-dir", str(folder), what)

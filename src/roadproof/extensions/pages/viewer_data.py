@@ -1,6 +1,6 @@
 """What the viewer in a browser shows, as one plain document: a drive, and formulas that were judged on it.
 
-The viewer (``report/viewer``) needs nothing else and no server. Distances, danger and truth are the judge's
+The viewer (``viewer``) needs nothing else and no server. Distances, danger and truth are the judge's
 and the library's; places between the knots of a motion follow from its pieces, which are in the document.
 Floats are for drawing; ``exact`` of a part tells its truth with open and closed ends.
 """

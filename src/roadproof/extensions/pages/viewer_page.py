@@ -15,7 +15,7 @@ _MODULES = ("vendor/view", *(f"viewer/{name}" for name in _OWN))
 
 def folder() -> Traversable:
     """Where they lie."""
-    return resources.files("roadproof.frontends.report").joinpath("viewer")
+    return resources.files("roadproof.extensions.pages").joinpath("viewer")
 
 
 @cache

@@ -12,7 +12,7 @@ from roadproof.logic.syntax import Claim, Definition
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 
-_LIBRARY = Path(__file__).parents[3] / "library" / "sets"
+_LIBRARY = Path(__file__).parents[2] / "library" / "sets"
 
 State: TypeAlias = Literal["passed", "failed", "undecided", "skipped"]
 

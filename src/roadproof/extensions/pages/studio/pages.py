@@ -58,7 +58,7 @@ def page_of(nonce: str) -> str:
 @cache
 def _modules() -> dict[str, str]:
     editor = (
-        resources.files("roadproof.frontends.report")
+        resources.files("roadproof.extensions.pages")
         .joinpath("viewer", "vendor", "edit.js")
         .read_text("utf-8")
     )

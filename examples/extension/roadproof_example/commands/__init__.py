@@ -1,0 +1,1 @@
+"""The sub-commands of this extension, a file each."""
