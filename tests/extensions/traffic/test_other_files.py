@@ -101,7 +101,12 @@ def test_xml_in_utf_16_is_read(tmp_path: Path) -> None:
 DECODES = re.compile(r"""read_text\(["']utf-8["']\)|\.decode\(["']utf-8["']\)|\.read_text\(\)""")
 OWN = {
     *("runtime/files.py", "extensions/assurance/pins.py", "extensions/traffic/formats/content.py"),
-    *("library/loading.py", "logic/grammar.py", "drivers/lemmas.py", "engines/prove/properties.py"),
+    *(
+        "library/loading.py",
+        "logic/grammar.py",
+        "extensions/drivers/lemmas.py",
+        "engines/prove/properties.py",
+    ),
     *("extensions/pages/page/templates.py", "extensions/pages/viewer_page.py"),
     *(
         "extensions/assurance/bundling.py",

@@ -3,6 +3,7 @@
 import json
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -209,21 +210,17 @@ def test_doorstop(doorstop: Path) -> None:
 @pytest.mark.parametrize(
     ("line", "told"),
     [
-        ("claims: &a b", "line 1: '&a b' is not read"),
-        ("claims: *a", "is not read"),
-        ("claims: !!python/object:os.system x", "is not read"),
-        ("claims: {a: b}", "is not read"),
-        ("claims: [a, b]", "is not read"),
-        ("claims: 'open", "is not read"),
-        ('claims: "open', "is not read"),
-        ("? a", "is not read"),
-        ("- a", "is not read"),
+        ("claims: *a", "line 1: it is no YAML: a repeated part (*name) and a tag (!name) are not read"),
+        ("claims: !!python/object:os.system x", "a tag (!name) are not read"),
+        ("claims: 'open", "found unexpected end of stream"),
+        ('claims: "open', "found unexpected end of stream"),
+        ("- a", "line 1: write keys with texts"),
         ("a: b\na: c", "the key 'a' is given twice"),
     ],
 )
 def test_yaml_that_doorstop_does_not_write_is_refused(doorstop: Path, line: str, told: str) -> None:
     (doorstop / "TOP001.yml").write_text(f"{line}\n", "utf-8")
-    with pytest.raises(InputError, match=told.replace("*", r"\*")):
+    with pytest.raises(InputError, match=re.escape(told)):
         read_requirements(doorstop)
 
 
