@@ -11,7 +11,7 @@ from mutants.spec_edits import spec_edits_of
 
 FOLDERS = {
     "semantics/exact": "judge",
-    "semantics/sampled": "monitoring",
+    "semantics/sampled": "extensions/traffic/monitoring",
     "engines/encode": "encode",
     "engines/solve": "solve",
     "evidence": "evidence",
@@ -20,14 +20,14 @@ FOLDERS = {
     "extensions/traffic/formats": "formats",
     "extensions/traffic/evaluate": "evaluation",
     "extensions/traffic/simulate": "simulation",
-    "extensions/exchange/export": "exporting",
-    "extensions/drivers": "drivers",
-    "extensions/drivers/preventable": "drivers",
+    "extensions/exchange/export": "extensions/exchange/exporting",
+    "extensions/drivers": "extensions/drivers",
+    "extensions/drivers/preventable": "extensions/drivers",
     "extensions/kernel/derivations": "deriving",
-    "extensions/kernel": "kernel",
-    "extensions/pages/studio": "studio",
+    "extensions/kernel": "extensions/kernel",
+    "extensions/pages/studio": "extensions/pages/studio",
     "frontends/api": "api",
-    "extensions/catalogue": "analysis",
+    "extensions/catalogue": "extensions/catalogue",
 }
 """Folders whose files get faults, and the folder below ``tests`` whose tests have to notice."""
 

@@ -38,7 +38,8 @@ def test_files(root: Path) -> list[Path]:
     named = [(path, str(path.relative_to(root))) for path in found]
     kept = [path for path, name in named if name not in LEFT_OUT and not name.startswith(own)]
     order = [*FOLDERS.values(), "spec"]
-    return sorted(kept, key=lambda path: order.index(path.parent.name) if path.parent.name in order else 99)
+    names = {path: path.parent.relative_to(root / "tests").as_posix() for path in kept}
+    return sorted(kept, key=lambda path: order.index(names[path]) if names[path] in order else 99)
 
 
 @dataclass

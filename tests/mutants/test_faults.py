@@ -117,9 +117,12 @@ def test_folders_are_chosen_alone_or_together() -> None:
     assert both == one | other
 
 
+_FILES = ("kernel/test_a.py", "judge/test_b.py", "traffic/test_c.py")
+
+
 def test_test_files_are_recorded_alone_or_together() -> None:
-    paths = [ROOT / f"tests/{x}" for x in ("kernel/test_a.py", "judge/test_b.py", "traffic/test_c.py")]
-    assert within(paths, "tests/extensions/kernel/,tests/extensions/traffic/test_c") == [paths[0], paths[2]]
+    paths = [ROOT / f"tests/{x}" for x in _FILES]
+    assert within(paths, "tests/kernel/,tests/traffic/test_c") == [paths[0], paths[2]]
     assert within(paths, "") == paths
 
 
