@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import field
 from fractions import Fraction
-from typing import TypeVar
+from typing import TypeVar, assert_never
 
 from roadproof.errors import Position, TextError
 from roadproof.library import arithmetic, kinds, scopes
@@ -292,9 +292,16 @@ class Elaborator:
             case syntax.Temporal(op, bounds, left, right, _):
                 interval = self.interval(bounds, scope)
                 goal = self.formula(right, scope)
-                if left is not None:
-                    return f.Until(self.formula(left, scope), interval, goal)
-                return f.Eventually(interval, goal) if op == "F" else f.Always(interval, goal)
+                match op:
+                    case "U":
+                        assert left is not None  # the grammar
+                        return f.Until(self.formula(left, scope), interval, goal)
+                    case "F":
+                        return f.Eventually(interval, goal)
+                    case "G":
+                        return f.Always(interval, goal)
+                    case _:
+                        assert_never(op)
             case syntax.Quantified():
                 return self._quantified(expression, scope)
 

@@ -61,9 +61,10 @@ def as_syntax(formula: Formula, expand: bool = False) -> Expression:
             return _chain(word, [as_syntax(part, expand) for part in parts])
         case f.Until(left, interval, right):
             return syntax.Temporal("U", _bounds(interval), as_syntax(left, expand), as_syntax(right, expand))
-        case f.Eventually(interval, body) | f.Always(interval, body):
-            sign: syntax.TemporalOperator = "F" if isinstance(formula, f.Eventually) else "G"
-            return syntax.Temporal(sign, _bounds(interval), None, as_syntax(body, expand))
+        case f.Eventually(interval, body):
+            return syntax.Temporal("F", _bounds(interval), None, as_syntax(body, expand))
+        case f.Always(interval, body):
+            return syntax.Temporal("G", _bounds(interval), None, as_syntax(body, expand))
         case f.Application(name, arguments, body):
             if expand or not all(_NAME.fullmatch(argument) for argument in arguments):
                 return as_syntax(body, expand)

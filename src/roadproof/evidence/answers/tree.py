@@ -195,9 +195,14 @@ def _call(of: syntax.Call) -> CallNode:
 def _temporal(of: syntax.Temporal) -> WithinNode | UntilNode:
     bounds = of.bounds or Bounds(syntax.Literal_(Fraction(0)), None)
     low, high = node(bounds.low), None if bounds.high is None else node(bounds.high)
-    if of.left is None:
-        return WithinNode(node="G" if of.op == "G" else "F", low=low, high=high, body=node(of.right))
-    return UntilNode(node="U", low=low, high=high, left=node(of.left), right=node(of.right))
+    match of.op:
+        case "F" | "G" as op:
+            return WithinNode(node=op, low=low, high=high, body=node(of.right))
+        case "U":
+            assert of.left is not None  # the grammar
+            return UntilNode(node="U", low=low, high=high, left=node(of.left), right=node(of.right))
+        case _:
+            assert_never(of.op)
 
 
 def _bindings(bindings: tuple[syntax.Binding, ...]) -> tuple[Binding, ...]:
