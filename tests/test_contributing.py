@@ -203,6 +203,16 @@ def test_mypy_names_every_reader_that_forgets_a_signal_or_a_node(copy):
     )
 
 
+
+def test_mypy_names_every_reader_of_a_new_temporal_operator(copy):
+    """Where only the parser knows it, no reader takes it for another: that gave a false PROVED."""
+    old = 'TemporalOperator: TypeAlias = Literal["F", "G", "U"]'
+    forge(copy / "src/roadproof/logic/syntax.py", (old, old.replace('"U"', '"U", "O"')))
+    told = begin(copy, "-m", "mypy", "--strict", "src").stdout
+    found = set(re.findall(r"^src/roadproof/(\S+?):\d+: error:.*[Nn]ever", told, re.MULTILINE))
+    assert {"library/elaboration.py", "evidence/answers/tree.py"} <= found, told
+
+
 REFUSALS = """
 from fractions import Fraction as F
 import numpy as np
