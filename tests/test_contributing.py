@@ -203,7 +203,6 @@ def test_mypy_names_every_reader_that_forgets_a_signal_or_a_node(copy):
     )
 
 
-
 def test_mypy_names_every_reader_of_a_new_temporal_operator(copy):
     """Where only the parser knows it, no reader takes it for another: that gave a false PROVED."""
     old = 'TemporalOperator: TypeAlias = Literal["F", "G", "U"]'

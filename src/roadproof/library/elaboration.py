@@ -1,4 +1,4 @@
-"""One walk over one claim, from syntax to formula; ``spec.elaborate`` has the doors to it.
+"""One walk over one claim, from syntax to formula; ``library.elaborate`` has the doors to it.
 
 Applying a definition puts its body in place of the call, wrapped in ``Application``; vehicles and lanes
 are names from the start, so what comes out speaks of SV, POV and L and nothing else.

@@ -171,7 +171,7 @@ def read_specification(path: Path) -> Source:
     return Source(str(path), read_text(path, LARGEST_FILE, "split it, or name another file"))
 
 
-# Names that mean something without a definition; spec.elaborate gives their meaning.
+# Names that mean something without a definition; library.elaborate gives their meaning.
 BUILT_IN = frozenset(
     {*SIGNALS, *FIXED, "occ"} | {"max", "min", "abs", "inverse", "lanes", "lanelets", "zone", "adjacentLanes"}
 )

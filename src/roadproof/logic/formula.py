@@ -2,7 +2,7 @@
 
 Sugar dies at construction: there is no implication node, and ``!=`` is a negated equality.
 ``Application`` remembers which definition a sub-formula came from; it means what its body means.
-Quantifiers over lanes and lanelets stay in the tree until a road is chosen (``spec.bind``).
+Quantifiers over lanes and lanelets stay in the tree until a road is chosen (``library.bind``).
 
 Semantics (semantics §1; paper, Table *Boolean semantics of STL*): time is dense and starts at 0.
 ``Until(φ, J, ψ)`` at T: some t in J has ψ at T+t and φ at T+t' for every t' < t in J.

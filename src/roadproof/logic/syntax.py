@@ -1,6 +1,6 @@
 """What the parser returns: the text as a tree, before names and units are understood.
 
-Terms and formulas are not yet told apart, since a call may be either. ``spec.elaborate`` does that.
+Terms and formulas are not yet told apart, since a call may be either. ``library.elaborate`` does that.
 """
 
 from collections.abc import Callable, Iterator

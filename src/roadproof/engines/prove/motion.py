@@ -1,6 +1,6 @@
 """Which facts about motion may help to prove a claim: instances of the schemas, chosen from what it compares.
 
-They are only chosen here. What each says is made in ``spec.motion`` from its schema and arguments, by the
+They are only chosen here. What each says is made in ``library.motion`` from its schema and arguments, by the
 prover as by whoever checks a certificate.
 """
 

@@ -1,8 +1,8 @@
 """Comparisons of terms over blocks of samples: one straight program, each sub-term computed once.
 
-Arithmetic is IEEE double in a fixed order, the same as in ``monitor.recursive``: a sub-term without
-signals is one exact rational rounded once; sums and products run from left to right; a power is a
-repeated product. Comparisons are strict or not exactly as written.
+Arithmetic is IEEE double in a fixed order, the same as in ``extensions.traffic.evaluate.recursive``: a
+sub-term without signals is one exact rational rounded once; sums and products run from left to right; a power
+is a repeated product. Comparisons are strict or not exactly as written.
 """
 
 from collections.abc import Callable, Iterable, Sequence
