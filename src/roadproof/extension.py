@@ -6,84 +6,111 @@ that an entry point of the group ``roadproof.extensions`` names. Its commands ar
 needed, so that a start reads nothing but records.
 """
 
+from __future__ import annotations
+
 import os
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from functools import cache
 from importlib import import_module
 from typing import Any, Final, Literal, TypeAlias
-
-from roadproof.errors import InputError
 
 GROUP: Final = "roadproof.extensions"
 """The folder of the extensions that come with roadproof, and the group of entry points of others."""
 Label: TypeAlias = Literal["stable", "incubating"]
 Audience: TypeAlias = Literal["testers", "safety cases", "researchers"]
-AUDIENCES: Final[tuple[Audience, ...]] = ("testers", "safety cases", "researchers")
 Entries: TypeAlias = Mapping[str, str]
 """Names, each with ``module:name`` of what it stands for."""
+AUDIENCES: Final[tuple[Audience, ...]] = ("testers", "safety cases", "researchers")
+_NONE: Entries = {}
+_installed: dict[str, Installed] = {}
 
 
-@dataclass(frozen=True, kw_only=True)
 class Extension:
     """What an extension adds. What is incubating may be removed.
 
-    ``needs``: the extensions that it imports; ``incubating``: parts of a stable one that may be removed.
+    ``needs``: the extensions that it imports; ``incubating``: parts of a stable one that may be removed. All
+    else are slots, each described where it is set.
     """
 
-    title: str
-    audience: Audience
-    label: Label = "stable"
-    needs: tuple[str, ...] = ()
-    incubating: tuple[str, ...] = ()
-    functions: Entries = field(default_factory=dict)
-    """Functions and classes of ``import roadproof``."""
-    questions: Entries = field(default_factory=dict)
-    """Classes of questions, by their kind."""
-    answers: Entries = field(default_factory=dict)
-    """Classes of the answers to questions in Python, by the kind of the question."""
-    evidence: Entries = field(default_factory=dict)
-    """Classes of evidence (``evidence.answer_files.OwnEvidence``), by the schema of their files."""
-    build_results: Entries = field(default_factory=dict)
-    """Writers of files for build servers (``frontends.api.build_result.Writer``), by their format."""
-    kernels: tuple[str, ...] = ()
-    """Those who check evidence again (``evidence.kernels.Kernels``)."""
-    modifiers: Entries = field(default_factory=dict)
-    """Functions that find the modifier of a question (``engines.modifier``), by the option that says it."""
-    roads: Entries = field(default_factory=dict)
-    """Functions that read a road from a text that names it, by the ending of the file in it."""
-    frames: tuple[str, ...] = ()
-    """A function that makes a data frame of rows."""
-    words: tuple[str, ...] = ()
-    """Functions that say what parts of a formula mean that scenarios have no words for."""
-    checked_files: Entries = field(default_factory=dict)
-    """Functions that check a file for ``roadproof check``, by its ending; they return the exit code."""
-    animations: Entries = field(default_factory=dict)
-    """Animations of drives (``frontends.report.witness.Animation``), by the name of their format."""
-    completions: Entries = field(default_factory=dict)
-    """Functions that give words with descriptions, with which a shell completes a value, by flag."""
-    options: Entries = field(default_factory=dict)
-    """Classes of further options (``frontends.settings.option.Settings``), by the command that has them."""
-    sections: Entries = field(default_factory=dict)
-    """Sections of pages (``extensions.pages.page.section_kind``), by the kind of the result."""
-    formats: tuple[str, ...] = ()
-    """Formats of recordings (``extensions.traffic.formats.source.Format``)."""
-    traces: Entries = field(default_factory=dict)
-    """Readers of a file of one trace (``extensions.traffic.formats.source.ReadTrace``), by its ending."""
-    drives: Entries = field(default_factory=dict)
-    """Readers of a file that is a drive (``extensions.traffic.formats.source.ReadDrive``), by its ending."""
-    schemas: tuple[str, ...] = ()
-    """Mappings of definitions of JSON files to their titles."""
+    def __init__(
+        self,
+        *,
+        title: str,
+        audience: Audience,
+        label: Label = "stable",
+        needs: tuple[str, ...] = (),
+        incubating: tuple[str, ...] = (),
+        functions: Entries = _NONE,
+        questions: Entries = _NONE,
+        answers: Entries = _NONE,
+        evidence: Entries = _NONE,
+        build_results: Entries = _NONE,
+        kernels: tuple[str, ...] = (),
+        modifiers: Entries = _NONE,
+        roads: Entries = _NONE,
+        frames: tuple[str, ...] = (),
+        words: tuple[str, ...] = (),
+        checked_files: Entries = _NONE,
+        animations: Entries = _NONE,
+        completions: Entries = _NONE,
+        options: Entries = _NONE,
+        sections: Entries = _NONE,
+        formats: tuple[str, ...] = (),
+        traces: Entries = _NONE,
+        drives: Entries = _NONE,
+        schemas: tuple[str, ...] = (),
+    ) -> None:
+        # Assigned by hand: a start, which reads all records, imports no dataclasses.
+        self.title = title
+        self.audience = audience
+        self.label = label
+        self.needs = needs
+        self.incubating = incubating
+        self.functions = functions
+        """Functions and classes of ``import roadproof``."""
+        self.questions = questions
+        """Classes of questions, by their kind."""
+        self.answers = answers
+        """Classes of the answers to questions in Python, by the kind of the question."""
+        self.evidence = evidence
+        """Classes of evidence (``evidence.answer_files.OwnEvidence``), by the schema of their files."""
+        self.build_results = build_results
+        """Writers of files for build servers (``frontends.api.build_result.Writer``), by their format."""
+        self.kernels = kernels
+        """Those who check evidence again (``evidence.kernels.Kernels``)."""
+        self.modifiers = modifiers
+        """Functions that find the modifier of a question (``engines.modifier``), by the option for it."""
+        self.roads = roads
+        """Functions that read a road from a text that names it, by the ending of the file in it."""
+        self.frames = frames
+        """A function that makes a data frame of rows."""
+        self.words = words
+        """Functions that say what parts of a formula mean that scenarios have no words for."""
+        self.checked_files = checked_files
+        """Functions that check a file for ``roadproof check``, by its ending; they return the exit code."""
+        self.animations = animations
+        """Animations of drives (``frontends.report.witness.Animation``), by the name of their format."""
+        self.completions = completions
+        """Functions that give words with descriptions, with which a shell completes a value, by flag."""
+        self.options = options
+        """Classes of further options (``frontends.settings.option.Settings``), by their command."""
+        self.sections = sections
+        """Sections of pages (``extensions.pages.page.section_kind``), by the kind of the result."""
+        self.formats = formats
+        """Formats of recordings (``extensions.traffic.formats.source.Format``)."""
+        self.traces = traces
+        """Readers of a file of one trace (``extensions.traffic.formats.source.ReadTrace``), by its ending."""
+        self.drives = drives
+        """Readers of a file of one drive (``extensions.traffic.formats.source.ReadDrive``), by its ending."""
+        self.schemas = schemas
+        """Mappings of definitions of JSON files to their titles."""
 
 
-@dataclass(frozen=True)
 class Installed:
     """An extension that is there: its name, its package and its record."""
 
-    name: str
-    package: str
-    record: Extension
+    def __init__(self, name: str, package: str, record: Extension) -> None:
+        self.name, self.package, self.record = name, package, record
 
     @property
     def folder(self) -> str:
@@ -95,14 +122,16 @@ class Installed:
         return entry if entry.startswith("roadproof.") else f"{self.package}.{entry}"
 
 
-@cache
 def installed() -> Mapping[str, Installed]:
     """The extensions that are there, by name. Raises ``InputError`` for a package without a record."""
+    if _installed:
+        return _installed
     folder = os.path.join(os.path.dirname(__file__), "extensions")
     own = sorted(os.listdir(folder)) if os.path.isdir(folder) else []
     own = [x for x in own if os.path.exists(os.path.join(folder, x, "__init__.py"))]
     packages = {**{name: f"{GROUP}.{name}" for name in own}, **_of_others()}
-    return {name: _read(name, package) for name, package in packages.items()}
+    _installed.update({name: _read(name, package) for name, package in packages.items()})
+    return _installed
 
 
 def entries(slot: str) -> Mapping[str, str]:
@@ -131,6 +160,8 @@ def imported(entry: str) -> Any:
 def _read(name: str, package: str) -> Installed:
     record = getattr(import_module(package), "EXTENSION", None)
     if not isinstance(record, Extension):
+        from roadproof.errors import InputError  # a start needs none
+
         raise InputError(f"extension '{name}': its package {package} has no EXTENSION of the class Extension")
     return Installed(name, package, record)
 

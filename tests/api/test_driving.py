@@ -115,7 +115,7 @@ VEHICLES = {
     "POV": motion(70, 2.8, 28, along=BRAKING, across=[(1, 0.1), (1, -0.1)]),
 }
 FILE = drive(4, VEHICLES, rp.load("ext")).file
-VIEWER = Path(__file__).parents[2] / "src" / "roadproof" / "frontends" / "report" / "viewer" / "drive.js"
+VIEWER = Path(__file__).parents[2] / "src/roadproof/extensions/pages/viewer/drive.js"
 
 
 # --- monitor ---------------------------------------------------------------------------------------

@@ -67,7 +67,7 @@ def test_names_stay_when_modules_are_imported() -> None:
         "semantics.sampled.batch",
         "questions.order.question",
         "evidence.checking",
-        "recordings.export.registry",
+        "extensions.exchange.export.registry",
         "verdict",
     ):
         import_module(f"roadproof.{module}")

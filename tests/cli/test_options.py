@@ -175,7 +175,8 @@ def asked_of_prove(words: list[str]) -> ProveQuestion:
 
 def test_the_file_of_keyword_arguments_follows_the_definitions() -> None:
     remake = "run: python -m roadproof.frontends.settings.keywords_file"
-    assert keywords_file.FILE.read_text("utf-8") == keywords_file.text(), remake
+    for file, homes in keywords_file.modules().items():
+        assert file.read_text("utf-8") == keywords_file.text(homes), remake
 
 
 @pytest.mark.parametrize("question", keywords_file.all_questions(), ids=lambda x: x.__name__)
@@ -290,13 +291,18 @@ def test_the_usual_options_of_witness_fit_a_screen(
     assert len(printed(capsys, "witness", "--help").splitlines()) <= 48
 
 
-def test_every_command_stands_below_a_job_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_command_stands_once_below_those_whom_it_is_for(capsys: pytest.CaptureFixture[str]) -> None:
     shown = printed(capsys, "--help")
-    for job, names in groups().items():
-        assert f"\n{job}:\n  {names[0]} " in shown
-    for name, summary in COMMANDS.items():
-        assert len(re.findall(rf"^  {name} +{re.escape(summary)}$", shown, re.MULTILINE)) == 1
-        assert len(summary) <= 65
+    for title, names in groups().items():
+        assert re.search(rf"^{title}:\n(  \S.*\n)+", shown, re.MULTILINE)
+        assert all(re.search(rf"^  (\w+, )*{name}\b", shown, re.MULTILINE) for name in names)
+    for name, command in COMMANDS.items():
+        if command.extension is None:
+            line = rf"^  {name} +{re.escape(command.summary)}$"
+        else:
+            line = rf"^  (\w+, )*{name}(, \w+)* +{re.escape(command.extension.record.title)}$"
+        assert len(re.findall(line, shown, re.MULTILINE)) == 1
+        assert len(command.summary) <= 80
     assert shown == printed(capsys, "-h") == printed(capsys, "--help", "witness")
 
 
@@ -384,7 +390,7 @@ def test_errors_name_options_that_the_command_has(command: str) -> None:
     known = options_of(command)
     wrong = {
         (module, option)
-        for module in reached_from(f"roadproof.frontends.cli.{command}")
+        for module in reached_from(SUB_COMMANDS[command].module)
         for option in hints_in(module) - READERS.get(module, set())
         if option not in known
     }

@@ -1,19 +1,21 @@
 """What extensions declare is what they are: imports, entries, labels."""
 
+import json
 import re
-from dataclasses import fields
+from inspect import signature
 from pathlib import Path
 
 import grimp
 import pytest
+from jsonschema import validate
 
 from roadproof.extension import AUDIENCES, GROUP, Extension, added, entries, imported, installed, listed
+from roadproof.frontends.cli.main import main
 from roadproof.frontends.cli.overview import COMMANDS
 
 ROOT = Path(__file__).parents[2]
-SLOTS = [
-    x.name for x in fields(Extension) if x.name not in ("title", "audience", "label", "needs", "incubating")
-]
+_PLAIN = ("title", "audience", "label", "needs", "incubating")
+SLOTS = [x for x in signature(Extension).parameters if x not in _PLAIN]
 
 
 @pytest.fixture(scope="module")
@@ -66,3 +68,14 @@ def test_commands_of_extensions_are_found() -> None:
     mine = {name for name, x in COMMANDS.items() if x.extension is not None}
     files = (ROOT / "src/roadproof/extensions").glob("*/commands/*.py")
     assert mine == {x.stem for x in files if x.stem != "__init__"}
+
+
+def test_the_list_of_extensions_is_what_its_schema_says(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["extensions", "--json", "-"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    validate(said, json.loads((ROOT / "docs/schema/extensions.json").read_text("utf-8")))
+    assert [x["name"] for x in said["extensions"]] == [*installed()]
+    assert main(["extensions"]) == 0
+    told = capsys.readouterr().out
+    assert all(f"  {name} " in told for name in installed())
+    assert "incubating: storyboards of OpenSCENARIO, which are run here" in told

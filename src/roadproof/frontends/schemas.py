@@ -7,7 +7,16 @@ from pathlib import Path
 from typing import get_args
 
 from roadproof.evidence.answer_files import JudgedFile, RefutationFile, Undecided
-from roadproof.evidence.answers import certificate, drive, library, none_within, shared, show, tree
+from roadproof.evidence.answers import (
+    certificate,
+    drive,
+    extensions,
+    library,
+    none_within,
+    shared,
+    show,
+    tree,
+)
 from roadproof.evidence.codec import fields_of, notes_of
 from roadproof.evidence.json_schema import (
     COMMON,
@@ -32,6 +41,7 @@ from roadproof.questions.witness import WitnessData
 CORE: Mapping[type, str] = {
     ClaimsData: "roadproof prove --json: claims, proved or refuted",
     ComparisonData: "roadproof compare --json: which of two formulas implies the other",
+    extensions.Answer: "roadproof extensions --json: what is installed beyond the core",
     library.Answer: "roadproof list --json: what the library holds",
     show.Answer: "roadproof show --format json: a scenario, a definition or a formula",
     check_data.Answer: "roadproof check --json: what evidence shows",

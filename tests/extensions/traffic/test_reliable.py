@@ -16,6 +16,7 @@ from extensions.traffic.make_recording import Track, cruise, make_recording
 from extensions.traffic.planar_exid import write_exid
 from extensions.traffic.tiny_commonroad import Car, document, lanelet
 from roadproof.errors import InputError
+from roadproof.extensions.surveys import settings
 from roadproof.extensions.surveys.classify.cells import whole_cell
 from roadproof.extensions.surveys.classify.classes import Classes, plan_of, what_axis
 from roadproof.extensions.surveys.classify.text import with_classes, write_classes
@@ -27,7 +28,6 @@ from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.extensions.traffic.formats.sources import find_source
 from roadproof.extensions.traffic.formats.write_highd import write_highd
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.settings import studies as settings
 from roadproof.library.loading import bundled_library
 from roadproof.questions.basis import Basis
 from roadproof.verdict import ExitCode

@@ -3,10 +3,13 @@
 import argparse
 
 from roadproof.errors import InputError
+from roadproof.evidence.answers.extensions import Answer, ExtensionData
+from roadproof.evidence.codec import write
 from roadproof.extension import AUDIENCES, Installed, installed
 from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.overview import COMMANDS
 from roadproof.frontends.settings.commands import Extensions
+from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
 
 SUMMARY = "list the extensions that are installed, for whom they are and what they add"
@@ -32,7 +35,7 @@ def run(args: argparse.Namespace) -> int:
                 f"extension '{x.name}' needs {', '.join(missing)}: install it, or remove {x.name}"
             )
     if args.json:
-        write_json({"extensions": [_data(x) for x in found.values()]}, args.json)
+        write_json(write(Answer(roadproof=VERSION, extensions=tuple(map(_data, found.values())))), args.json)
     if args.json != "-":
         print("\n".join(_lines(list(found.values()))))
     return ExitCode.AS_EXPECTED
@@ -56,17 +59,17 @@ def _lines(found: list[Installed]) -> list[str]:
     return lines or ["no extension is installed"]
 
 
-def _data(x: Installed) -> dict[str, object]:
+def _data(x: Installed) -> ExtensionData:
     record = x.record
-    return {
-        "name": x.name,
-        "package": x.package,
-        "title": record.title,
-        "audience": record.audience,
-        "label": record.label,
-        "incubating": list(record.incubating),
-        "needs": list(record.needs),
-        "commands": _commands(x),
-        "functions": sorted(record.functions),
-        "questions": sorted(record.questions),
-    }
+    return ExtensionData(
+        name=x.name,
+        package=x.package,
+        title=record.title,
+        audience=record.audience,
+        label=record.label,
+        incubating=record.incubating,
+        needs=record.needs,
+        commands=tuple(_commands(x)),
+        functions=tuple(sorted(record.functions)),
+        questions=tuple(sorted(record.questions)),
+    )

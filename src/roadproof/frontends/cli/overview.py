@@ -1,8 +1,9 @@
 """The help of the program: the commands of the core, then those of each extension. It imports no command."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from roadproof.extension import AUDIENCES, Installed, installed
 
@@ -23,13 +24,11 @@ exit codes: 0 as expected, 10 refuted or unexpected, 20 unknown, 30 cross-check 
 """
 
 
-@dataclass(frozen=True)
 class Command:
     """A sub-command: the module that answers it, what it does, and the extension that adds it, if one."""
 
-    module: str
-    summary: str
-    extension: Installed | None = None
+    def __init__(self, module: str, summary: str, extension: Installed | None = None) -> None:
+        self.module, self.summary, self.extension = module, summary, extension
 
 
 def _find_commands() -> Mapping[str, Command]:

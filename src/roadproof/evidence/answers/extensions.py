@@ -1,0 +1,33 @@
+"""The answer of ``roadproof extensions``: what is installed beyond the core."""
+
+from typing import Annotated, Final, Literal
+
+from roadproof.evidence.codec import Doc
+from roadproof.runtime.records import dataclass
+
+SCHEMA: Final = "roadproof/extensions/1"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExtensionData:
+    """An extension: what it adds, and for whom."""
+
+    name: str
+    package: str
+    title: str
+    audience: Literal["testers", "safety cases", "researchers"]
+    label: Annotated[Literal["stable", "incubating"], Doc("What is incubating may be removed.")]
+    incubating: Annotated[tuple[str, ...], Doc("Parts that may be removed.")]
+    needs: Annotated[tuple[str, ...], Doc("The extensions that it imports.")]
+    commands: tuple[str, ...]
+    functions: Annotated[tuple[str, ...], Doc("What it adds to import roadproof.")]
+    questions: Annotated[tuple[str, ...], Doc("The kinds of questions that it adds.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer:
+    """The extensions that are installed."""
+
+    schema: Literal["roadproof/extensions/1"] = SCHEMA
+    roadproof: Annotated[str, Doc("The version of roadproof.")]
+    extensions: tuple[ExtensionData, ...]
