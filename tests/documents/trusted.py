@@ -30,6 +30,9 @@ def imported(path: Path, known: dict[str, Path]) -> Iterator[Path]:
     elif path.suffix == ".py":
         yield from (x / "__init__.py" for x in path.parents if SOURCE in (x, *x.parents))
         yield from _imported_by_python(ast.parse(path.read_text("utf-8")), known)
+        if path == SOURCE / "extension.py":  # it reads the record of every extension
+            yield SOURCE / "extensions/__init__.py"
+            yield from (SOURCE / "extensions").glob("*/__init__.py")
 
 
 def _imported_by_python(tree: ast.AST, known: dict[str, Path]) -> Iterator[Path]:

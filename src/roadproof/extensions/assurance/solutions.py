@@ -155,7 +155,8 @@ def _faults(path: Path, evidence: Evidence, counted: Sequence[Finding], strict: 
 
 def _named(finding: Finding) -> str:
     """The label of a finding, else the name of its file."""
-    return finding.label or Path(finding.where).name
+    accepted = finding.outcome is Acceptance.ACCEPTED
+    return finding.label if accepted and finding.label else Path(finding.where).name
 
 
 def whole_verdict(path: Path, select: Sequence[str] = ()) -> tuple[str, str]:

@@ -99,7 +99,8 @@ def as_lines(answer: Answer) -> list[str]:
 def unlinked_line(x: LinkedEvidence) -> str:
     """Evidence without a requirement in a line."""
     if x.outcome is not Acceptance.ACCEPTED:
-        return f"{x.outcome}  {x.label or x.where}: {x.reason}"
+        label = f"{x.label}  " if x.label else ""
+        return f"{x.outcome}  {label}{x.where}: {x.reason}"
     return f"{x.verdict}  {x.label or excerpt(x.claim, 80)}  {x.where}"
 
 
