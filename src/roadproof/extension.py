@@ -22,7 +22,7 @@ Entries: TypeAlias = Mapping[str, str]
 """Names, each with ``module:name`` of what it stands for."""
 AUDIENCES: Final[tuple[Audience, ...]] = ("testers", "safety cases", "researchers")
 _NONE: Entries = {}
-_installed: dict[str, Installed] = {}
+_known: list[dict[str, Installed]] = []
 
 
 class Extension:
@@ -124,14 +124,14 @@ class Installed:
 
 def installed() -> Mapping[str, Installed]:
     """The extensions that are there, by name. Raises ``InputError`` for a package without a record."""
-    if _installed:
-        return _installed
+    if _known:
+        return _known[0]
     folder = os.path.join(os.path.dirname(__file__), "extensions")
     own = sorted(os.listdir(folder)) if os.path.isdir(folder) else []
     own = [x for x in own if os.path.exists(os.path.join(folder, x, "__init__.py"))]
     packages = {**{name: f"{GROUP}.{name}" for name in own}, **_of_others()}
-    _installed.update({name: _read(name, package) for name, package in packages.items()})
-    return _installed
+    _known.append({name: _read(name, package) for name, package in packages.items()})
+    return _known[0]
 
 
 def entries(slot: str) -> Mapping[str, str]:
