@@ -324,7 +324,7 @@ def test_impossible_names_its_core_and_is_unexpected(capsys):
     code, out, _ = witness(capsys, "witness", "scenario_1(SV,POV,L) and scenario_4(SV,POV,L)")
     assert code == 10
     assert "IMPOSSIBLE" in out
-    assert "minimal core" in out
+    assert "parts that clash" in out
     assert "not sameLane(POV, SV, L)" in out
 
 

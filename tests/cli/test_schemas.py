@@ -77,6 +77,7 @@ OPTIONAL = {
     "monitor.json": {"exact"},
     "refutation.json": {"assuming", "drive_sought"},
     "undecided.json": {"assuming", "doubt", "limits", "work"},
+    "preventable.json": {"boundary"},
     "redundancy.json": {"road"},
     "traffic-results.json": {"drivers"},
     "verdicts.json": {"limits", "road", "doubt"},

@@ -24,6 +24,7 @@ from roadproof.engines.prove.properties import find_label, name_of_claim
 from roadproof.errors import InputError
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.finding import Acceptance
+from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.questions.data import QUESTION
 from roadproof.runtime.package_data import shipped
@@ -57,6 +58,13 @@ def _shown(file: Path) -> tuple[object, ...]:
     return claim, said.get("set"), said.get("assuming"), said.get("parameters"), road, starts
 
 
+def _same_drives(one: Path, other: Path) -> bool:
+    """Whether both are drives of one formula, such as scenario 4 and not (scenario 4 <-> false)."""
+    texts = [read(x).get("formula") for x in (one, other)]
+    home = bundled_library().select()
+    return all(texts) and len({read_claim(home, x).formula for x in texts}) == 1
+
+
 @pytest.mark.parametrize("kind", MAKE)
 def test_evidence_of_any_folder_under_a_claim_of_another_is_rejected(kind: str, tmp_path: Path) -> None:
     """The file of a claim is that of a claim of each of the other kinds, and of its own kind."""
@@ -66,6 +74,7 @@ def test_evidence_of_any_folder_under_a_claim_of_another_is_rejected(kind: str, 
     for other in MAKE:
         theirs = files_of(copy_of(other, tmp_path / "other" / other))
         pairs = [(a, b) for a in files_of(folder) for b in theirs if _shown(a) != _shown(b)]
+        pairs = [(a, b) for a, b in pairs if not _same_drives(a, b)]
         assert pairs
         for mine, foreign in chance.sample(pairs, min(len(pairs), 2 if other == kind else 1)):
             before = mine.read_bytes()

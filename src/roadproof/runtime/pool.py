@@ -39,7 +39,9 @@ def work(
         from roadproof.runtime.dispatch import answers_of
         from roadproof.runtime.executors import LostJob
         from roadproof.runtime.worker import is_worker
-    if len(jobs) <= 1 or is_worker():
+    # A fresh process imports the script of the user again, who asks for none with one job at a time.
+    is_alone = fresh and who.processes == 1 and who.cluster is None
+    if len(jobs) <= 1 or is_worker() or is_alone:
         yield from enumerate(map(function, jobs))
         return
     total = known + len(jobs)

@@ -176,7 +176,7 @@ def _check(paths: Sequence[str | Path], asked: Check, takes_over: bool) -> Check
     judge = partial(_examine, asked.solver, work_of(asked))
     answers = pool.in_order(pool.work(judge, work, asked.jobs, _doubt, asked.progress, "files"))
     found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
-    beside = tuple(path for x in there.folders for path in x.specs)
+    beside = tuple(dict.fromkeys(path for x in there.folders for path in x.specs))
     findings = [*there.problems, *(found[file] for file in there.alone)]
     left: dict[str, tuple[str, ...]] = {}
     views: dict[str, QuestionAnswers[Any]] = {}
