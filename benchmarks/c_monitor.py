@@ -17,10 +17,10 @@ from time import perf_counter
 import numpy as np
 from monitor import random_batch, scenarios
 
+from roadproof.extensions.exchange.streaming.c_files import FLAGS, CSource, compile_c
 from roadproof.logic import terms as t
 from roadproof.logic.rewrite import without_names
 from roadproof.semantics.sampled import Batch, compile
-from roadproof.extensions.exchange.streaming.c_files import FLAGS, CSource, compile_c
 
 ROUNDS = 5
 _MAIN = """\

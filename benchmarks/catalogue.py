@@ -13,9 +13,9 @@ import time
 from pathlib import Path
 
 import roadproof as rp
+from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
 from roadproof.extensions.catalogue.entries import Concrete, Freedom
 from roadproof.extensions.catalogue.showing import show
-from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
 
 THOUSAND = 1000
 

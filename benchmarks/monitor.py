@@ -22,6 +22,7 @@ from time import perf_counter
 
 import numpy as np
 
+from roadproof.extensions.traffic.evaluate.recursive import Trace, TraceReader, answer
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.loading import bundled_library
@@ -30,7 +31,6 @@ from roadproof.logic.formula import Application, Formula, subformulas
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.semantics.sampled import Batch, Monitor, compile
 from roadproof.semantics.sampled.boolean import unpack
-from roadproof.extensions.traffic.evaluate.recursive import Trace, TraceReader, answer
 from roadproof.semantics.sampled.semantics import interval_steps
 
 SCENARIOS = (1, 3, 4, 5, 6, 7, 8)

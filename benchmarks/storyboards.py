@@ -18,11 +18,11 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from roadproof.errors import InputError
+from roadproof.extensions.exchange.openscenario import RATE
+from roadproof.extensions.exchange.storyboard.distributions import scenarios_of
 from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording
 from roadproof.extensions.traffic.evaluate.questions import Questions, ask, default_settings
-from roadproof.extensions.exchange.openscenario import RATE
 from roadproof.extensions.traffic.formats.sources import find_source
-from roadproof.extensions.exchange.storyboard.distributions import scenarios_of
 
 
 @dataclass(frozen=True)

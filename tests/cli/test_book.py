@@ -11,7 +11,8 @@ from console import agree, files_of, matches, run, sessions_of
 ROOT = Path(__file__).parents[2]
 LONG = ("roadproof overlap --among 3,4,6,8",)
 """Questions of the README that ``make findings`` asks; shorter ones of these commands are in the book."""
-EXAMPLES = sorted(ROOT.glob("examples/*/README.md"))
+# The example of an extension is installed, and asked, by tests/core/test_example.py.
+EXAMPLES = sorted(x for x in ROOT.glob("examples/*/README.md") if x.parent.name != "extension")
 TUTORIALS = ("first-scenario", "catalogue", "recordings", "careful-driver")
 GUIDES = (
     *("interop", "requirements", "signals", "rss", "roads", "solvers", "terminal", "recordings"),

@@ -47,7 +47,7 @@ def test_a_command_that_ends_without_an_answer_says_so(
     def run(parsed: Any) -> int:
         raise ending
 
-    monkeypatch.setattr(f"roadproof.frontends.cli.{command}.run", run)
+    monkeypatch.setattr(f"{COMMANDS[command].module}.run", run)
     code = main([command, *ARGUMENTS[command], "--junit", "j.xml", "--sarif", "s.sarif"])
     junit, sarif = (Path(x).read_text("utf-8") for x in ("j.xml", "s.sarif"))
     agree(junit, sarif, ExitCode(code))

@@ -98,7 +98,8 @@ class Plates(QuestionAnswers[PreventableView], BuildResult):
         return table | drawn(sheet)
 
     def __str__(self) -> str:
-        said = f"{count(len(self.plates), 'plate')}, {count(len(self.lemmas), 'lemma')}{took(self.seconds)}"
+        time = took(self.seconds or None)
+        said = f"{count(len(self.plates), 'plate')}, {count(len(self.lemmas), 'lemma')}{time}"
         proved = "".join(f"{x}\n" for x in self.boundaries)
         return f"{report.as_text(self.question, self.plates, self.lemmas)}\n{proved}{said}"
 

@@ -85,8 +85,10 @@ class Explorations(QuestionAnswers[ExploreView]):
             report.as_text(asked, self.explored[name], self._seconds_of(name)) for name, asked in named
         )
 
-    def _seconds_of(self, name: str) -> float:
-        """How long the claims of a formula took."""
+    def _seconds_of(self, name: str) -> float | None:
+        """How long the claims of a formula took; None where they were read from files."""
+        if not self.seconds:
+            return None
         return sum(cost.seconds for claim, cost in self.found.costs.items() if name in claim)
 
 

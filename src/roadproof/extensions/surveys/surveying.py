@@ -45,7 +45,7 @@ class SurveyAnswers(QuestionAnswers[Mapping[str, Answer | None]]):
         lines = [
             f"{x:<11} {name}{reasons[name] and f': {reasons[name]}'}" for name, x in self.verdicts.items()
         ]
-        return "\n".join([*lines, count(len(lines), "answer") + took(self.seconds)])
+        return "\n".join([*lines, count(len(lines), "answer") + took(self.seconds or None)])
 
 
 @takes(Ask)

@@ -178,7 +178,7 @@ class Witnesses(QuestionAnswers[WitnessView], BuildResult):
     def summary(self) -> str:
         """How many were found, in words."""
         found = sum(x.verdict is Verdict.WITNESSED for x in self.outcomes)
-        return f"{found} of {len(self.outcomes)} witnessed{took(self.seconds)}"
+        return f"{found} of {len(self.outcomes)} witnessed{took(self.seconds or None)}"
 
 
 @takes(Witness)

@@ -178,7 +178,7 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
         if self.question.are_own:
             return "\n".join(claims_text.details(x, self.question) for x in self.answers)
         table = claims_text.table(self.answers, self.library.select())
-        return f"{table}\n{count(len(self.answers), 'claim')}{took(self.seconds)}"
+        return f"{table}\n{count(len(self.answers), 'claim')}{took(self.seconds or None)}"
 
 
 @takes(Prove)

@@ -74,7 +74,7 @@ class Overlaps(QuestionAnswers[OverlapView]):
         return table | drawn(self.pictures() if pictures else {})
 
     def __str__(self) -> str:
-        said = count(len(self.pairs), "pair") + took(self.seconds)
+        said = count(len(self.pairs), "pair") + took(self.seconds or None)
         return f"{overlap_report.as_text(self.pairs, self.across, self.words)}\n{said}"
 
 
@@ -144,7 +144,7 @@ class Orders(QuestionAnswers[OrderView]):
         return graph | drawn(self.pictures() if pictures else {})
 
     def __str__(self) -> str:
-        return order_report.as_text(self.view, round(self.seconds, 1), self.words)
+        return order_report.as_text(self.view, self.seconds, self.words)
 
 
 @takes(settings.Order)

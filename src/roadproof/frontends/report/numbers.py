@@ -6,6 +6,6 @@ def count(number: int, noun: str) -> str:
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
-def took(seconds: float, comma: str = "") -> str:
-    """How long an answer took (s), after what was counted; empty where nothing was asked, as of a file."""
-    return f"{comma} in {seconds:.1f} s" if seconds else ""
+def took(seconds: float | None, comma: str = "") -> str:
+    """How long an answer took (s), after what was counted; empty for None, as of answers read from a file."""
+    return "" if seconds is None else f"{comma} in {seconds:.1f} s"

@@ -25,7 +25,7 @@ def as_text(order: OrderView, seconds: float, words: Called) -> str:
     lines.append(
         f"{count} scenarios, {len(order.kinds)} formulas: {len(order.edges)} edges proved, "
         f"{len(order.missing)} implications refuted by {len(order.drives)} drives, "
-        f"{len(order.doubts)} in doubt{took(seconds, ',')}"
+        f"{len(order.doubts)} in doubt{took(seconds or None, ',')}"
     )
     return "\n".join(lines)
 

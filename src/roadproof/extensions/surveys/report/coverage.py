@@ -24,7 +24,7 @@ def as_text(surveyed: Survey, index: kept.CoverageData, name: str, words: Called
     if index.classes:
         sheet = sheet_of(index, {number: x.name for number, x in words.items()})
         lines += [*as_outline(sheet), f"set {name}: " + "\n".join(summary(surveyed.classes))]
-        lines += [count(len(index.gaps), "gap") + took(index.seconds)]
+        lines += [count(len(index.gaps), "gap") + took(index.seconds or None)]
     else:
         lines += [f"proved: {x.claim.text}" for x in surveyed.claims]
     lines += [f"{need.definition}: {_needed(need)}" for need in surveyed.needs]

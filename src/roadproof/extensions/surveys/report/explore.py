@@ -38,7 +38,7 @@ def _meaning(verdict: Verdict, findings: Sequence[PointFinding]) -> str:
     return _THERE if there else _MEANING[verdict]
 
 
-def as_text(asked: Explorable, explored: ExplorationResult, seconds: float = 0.0) -> str:
+def as_text(asked: Explorable, explored: ExplorationResult, seconds: float | None = 0.0) -> str:
     """One explored formula for the terminal: its map, the ends, the extremes; reasons as notes below.
 
     ``seconds``: how long it took.

@@ -26,7 +26,7 @@ def as_text(findings: Mapping[int, Sequence[ChangeFinding]], seconds: float, wor
     traces = sum(x.verdict is Verdict.REFUTED for _, x in every) - drives
     lines.append(
         f"{len(every)} changes: {redundant} redundant, {moving} more for motion, {drives} told apart by a "
-        f"drive, {traces} by a trace, {len(doubts)} in doubt{took(seconds, ',')}"
+        f"drive, {traces} by a trace, {len(doubts)} in doubt{took(seconds or None, ',')}"
     )
     return "\n".join(lines)
 
