@@ -120,26 +120,25 @@ _HOMES = {
 
 def __getattr__(name: str) -> Any:
     if name == "__all__":
-        return [*_HOMES, *_of_extensions(), "__version__"]
+        return [*_names(), "__version__"]
     if name in _HOMES:
         return getattr(import_module(f"roadproof.{_HOMES[name]}"), name)
     if name.startswith("__"):
         raise AttributeError(f"module 'roadproof' has no attribute '{name}'")
     from roadproof.extension import imported
 
-    found = _of_extensions()
+    found = _names()
     if name not in found:
-        known = ", ".join((*_HOMES, *found))
-        raise AttributeError(f"module 'roadproof' has no attribute '{name}'; there are {known}")
+        raise AttributeError(f"module 'roadproof' has no attribute '{name}'; there are {', '.join(found)}")
     return imported(found[name])
 
 
-def _of_extensions() -> Mapping[str, str]:
-    """The functions that extensions add."""
+def _names() -> Mapping[str, str]:
+    """The names of the core and of the extensions, each with ``module:name``."""
     from roadproof.extension import entries
 
-    return entries("functions")
+    return entries("functions", {name: f"roadproof.{home}:{name}" for name, home in _HOMES.items()})
 
 
 def __dir__() -> list[str]:
-    return sorted((*_HOMES, *_of_extensions(), "__version__"))
+    return sorted((*_names(), "__version__"))

@@ -20,6 +20,7 @@ Label: TypeAlias = Literal["stable", "incubating"]
 Audience: TypeAlias = Literal["testers", "safety cases", "researchers"]
 Entries: TypeAlias = Mapping[str, str]
 """Names, each with ``module:name`` of what it stands for."""
+LABELS: Final[tuple[Label, ...]] = ("stable", "incubating")
 AUDIENCES: Final[tuple[Audience, ...]] = ("testers", "safety cases", "researchers")
 _NONE: Entries = {}
 _known: list[dict[str, Installed]] = []
@@ -105,6 +106,12 @@ class Extension:
         self.schemas = schemas
         """Mappings of definitions of JSON files to their titles."""
 
+    def own_names(self) -> Iterator[tuple[str, str]]:
+        """Each slot and name that no other extension may have; several may add options to one command."""
+        for slot, value in vars(self).items():
+            if isinstance(value, dict) and slot != "options":
+                yield from ((slot, name) for name in value)
+
 
 class Installed:
     """An extension that is there: its name, its package and its record."""
@@ -123,21 +130,46 @@ class Installed:
 
 
 def installed() -> Mapping[str, Installed]:
-    """The extensions that are there, by name. Raises ``InputError`` for a package without a record."""
+    """The extensions that are there, by name.
+
+    Raises ``InputError`` for a package that cannot be imported or has no record, for a record that needs what
+    is not there, and where two extensions have one name, or one in a slot.
+    """
     if _known:
         return _known[0]
     folder = os.path.join(os.path.dirname(__file__), "extensions")
     own = sorted(os.listdir(folder)) if os.path.isdir(folder) else []
     own = [x for x in own if os.path.exists(os.path.join(folder, x, "__init__.py"))]
-    packages = {**{name: f"{GROUP}.{name}" for name in own}, **_of_others()}
-    _known.append({name: _read(name, package) for name, package in packages.items()})
-    return _known[0]
+    found: dict[str, Installed] = {}
+    for name, package in (*((x, f"{GROUP}.{x}") for x in own), *_of_others()):
+        if name in found:
+            raise refused(name, f"{found[name].package} and {package} both have this name; uninstall one")
+        found[name] = _read(name, package)
+    for x in found.values():
+        if missing := [name for name in x.record.needs if name not in found]:
+            raise refused(x.name, f"it needs {', '.join(missing)}; install it, or uninstall {x.package}")
+    taken: dict[tuple[str, str], str] = {}
+    for x in found.values():
+        for key in x.record.own_names():
+            if key in taken:
+                raise refused(x.name, f"{key[0]}={key[1]!r} is in '{taken[key]}' already; uninstall one")
+            taken[key] = x.name
+    _known.append(found)
+    return found
 
 
-def entries(slot: str) -> Mapping[str, str]:
-    """Return the entries of a slot of all extensions, each as ``module:name``."""
-    found = ((x, getattr(x.record, slot)) for x in installed().values())
-    return {name: x.whole(entry) for x, named in found for name, entry in named.items()}
+def entries(slot: str, core: Entries = _NONE) -> Mapping[str, str]:
+    """Return the entries of a slot of the core and of all extensions, each as ``module:name``.
+
+    Raises ``InputError`` where an extension has a name that the core has.
+    """
+    found = dict(core)
+    for x in installed().values():
+        for name, entry in getattr(x.record, slot).items():
+            if name in core:
+                raise refused(x.name, f"{slot}={name!r} is {found[name]} already; uninstall {x.package}")
+            found[name] = x.whole(entry)
+    return found
 
 
 def added(slot: str, name: str) -> list[str]:
@@ -152,30 +184,47 @@ def listed(slot: str) -> list[str]:
 
 
 def imported(entry: str) -> Any:
-    """Return what ``module:name`` stands for."""
+    """Return what ``module:name`` stands for. Raises ``InputError`` where a package of others lacks it."""
     module, _, name = entry.partition(":")
-    return getattr(import_module(module), name)
+    try:
+        return getattr(import_module(module), name)
+    except (ImportError, AttributeError) as error:
+        if entry.startswith("roadproof."):
+            raise
+        raise refused(module.partition(".")[0], f"{entry} is named, but not there: {error}") from error
 
 
 def _read(name: str, package: str) -> Installed:
-    record = getattr(import_module(package), "EXTENSION", None)
+    try:
+        record = getattr(import_module(package), "EXTENSION", None)
+    except Exception as error:  # whatever a package of others does
+        reason = f"{type(error).__name__}: {error}"
+        raise refused(name, f"{package} cannot be imported: {reason}; mend or uninstall it") from error
     if not isinstance(record, Extension):
-        from roadproof.errors import InputError  # a start needs none
-
-        raise InputError(f"extension '{name}': its package {package} has no EXTENSION of the class Extension")
+        raise refused(name, f"{package} has no EXTENSION of the class Extension; mend or uninstall it")
+    for field, known in (("audience", AUDIENCES), ("label", LABELS)):
+        if (value := getattr(record, field)) not in known:
+            raise refused(name, f"{field}={value!r} of {package} is none of {', '.join(known)}")
     return Installed(name, package, record)
 
 
-def _of_others() -> Mapping[str, str]:
-    """The packages of others, by the names of their entry points.
+def refused(name: str, reason: str) -> Exception:
+    """Return the error that says what is wrong with an extension, and what to do."""
+    from roadproof.errors import InputError  # a start needs none
+
+    return InputError(f"extension '{name}': {reason}")
+
+
+def _of_others() -> list[tuple[str, str]]:
+    """The names and packages of the extensions of others.
 
     ``importlib.metadata`` is slow to import, so it is asked only where a file mentions the group.
     """
     if not any(map(_mentions, _entry_point_files())):
-        return {}
+        return []
     from importlib.metadata import entry_points
 
-    return {x.name: x.value for x in sorted(entry_points(group=GROUP), key=lambda x: x.name)}
+    return sorted({(x.name, x.value) for x in entry_points(group=GROUP)})
 
 
 def _entry_point_files() -> Iterator[str]:

@@ -86,7 +86,7 @@ def read_question(folder: Path, given: Sequence[Path] = ()) -> Question[Any]:
     path = folder / QUESTION
     content = read_json(path, LARGEST_INDEX)
     file = read(QuestionFile, content, str(path))
-    kinds = {**CORE, **entries("questions")}
+    kinds = entries("questions", CORE)
     if file.question not in kinds:
         raise InputError(f"{path}: question='{file.question[:40]}' is none of {', '.join(sorted(kinds))}")
     said = file.basis

@@ -22,6 +22,6 @@ CORE: Mapping[str, str] = {
 
 def rebuilt(found: QuestionFolder) -> "QuestionAnswers[Any]":
     """Return the answers of a folder as the command that asks the question has them."""
-    kind = imported({**CORE, **entries("answers")}[found.question.kind])
+    kind = imported(entries("answers", CORE)[found.question.kind])
     made: QuestionAnswers[Any] = kind(found.question, Settled(found.answers, {}), 0.0)
     return made

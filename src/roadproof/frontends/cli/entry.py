@@ -2,14 +2,17 @@
 
 import sys
 
-from roadproof.frontends.cli.overview import overview
 from roadproof.frontends.cli.streams import make_streams_lenient
 
 
 def main() -> int:
     """Run the command line of this process and return its exit code."""
+    make_streams_lenient()
+    try:
+        from roadproof.frontends.cli.overview import overview
+    except Exception as error:
+        return _refuse(error)
     if sys.argv[1:] in (["--help"], ["-h"]):
-        make_streams_lenient()
         try:
             print(overview(), end="", flush=True)
             return 0
@@ -18,3 +21,13 @@ def main() -> int:
     from roadproof.frontends.cli.main import main as run
 
     return run()
+
+
+def _refuse(error: Exception) -> int:
+    """Say which extension cannot be used; there are no commands without it."""
+    from roadproof.errors import RoadproofError
+
+    if not isinstance(error, RoadproofError):
+        raise error
+    print(f"roadproof: {error}", file=sys.stderr)
+    return int(error.exit_code)

@@ -2,7 +2,6 @@
 
 import argparse
 
-from roadproof.errors import InputError
 from roadproof.evidence.answers.extensions import Answer, ExtensionData
 from roadproof.evidence.codec import write
 from roadproof.extension import AUDIENCES, Installed, installed
@@ -28,12 +27,6 @@ OPTIONS = Extensions
 
 def run(args: argparse.Namespace) -> int:
     found = installed()
-    for x in found.values():
-        missing = [name for name in x.record.needs if name not in found]
-        if missing:
-            raise InputError(
-                f"extension '{x.name}' needs {', '.join(missing)}: install it, or remove {x.name}"
-            )
     if args.json:
         write_json(write(Answer(roadproof=VERSION, extensions=tuple(map(_data, found.values())))), args.json)
     if args.json != "-":

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
-from roadproof.extension import AUDIENCES, Installed, installed
+from roadproof.extension import AUDIENCES, Installed, installed, refused
 
 _ORDER = ("list", "show", "prove", "witness", "compare", "overlap", "order", "check")
 _HEAD = "Compiles driving scenarios to proofs, witnesses and monitors."
@@ -36,7 +36,11 @@ def _find_commands() -> Mapping[str, Command]:
     core = _commands_in(os.path.dirname(__file__), __name__.rpartition(".")[0], None)
     found = {name: core[name] for name in (*_ORDER, *sorted({*core} - {*_ORDER})) if name in core}
     for x in installed().values():
-        found |= _commands_in(os.path.join(x.folder, "commands"), f"{x.package}.commands", x)
+        mine = _commands_in(os.path.join(x.folder, "commands"), f"{x.package}.commands", x)
+        for name in mine:
+            if name in found:
+                raise refused(x.name, f"the command {name} is there already; uninstall {x.package}")
+        found |= mine
     return found
 
 
