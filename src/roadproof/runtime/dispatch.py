@@ -12,7 +12,7 @@ Answer = TypeVar("Answer")
 def answers_of(
     function: Callable[[Job], Answer], jobs: Sequence[Job], hands: Executor, fresh: bool = False
 ) -> Generator[tuple[int, Answer | LostJob], None, None]:
-    """``function`` of every job with its place, as ``answers_of`` of ``workers`` or ``cluster`` give it."""
+    """Yield the place of each job with its answer, in the order in which they end."""
     if hands.cluster is None:
         from roadproof.runtime import process_pool
 

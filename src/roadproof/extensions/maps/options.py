@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings.groups import (
     Answered,
@@ -11,9 +10,6 @@ from roadproof.frontends.settings.groups import (
 )
 from roadproof.frontends.settings.option import output
 from roadproof.runtime.records import dataclass
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -215,13 +215,34 @@ def test_doorstop(doorstop: Path) -> None:
         ("claims: 'open", "found unexpected end of stream"),
         ('claims: "open', "found unexpected end of stream"),
         ("- a", "line 1: write keys with texts"),
-        ("a: b\na: c", "the key 'a' is given twice"),
+        ("a: b\na: c", "line 2: it is no YAML: the key 'a' is given twice"),
+        ("a: " + "[" * 20_000, "its parts lie too deep in each other"),
+        ("a: \x07", "it is no YAML: unacceptable character #x0007: special characters are not allowed in"),
     ],
 )
 def test_yaml_that_doorstop_does_not_write_is_refused(doorstop: Path, line: str, told: str) -> None:
     (doorstop / "TOP001.yml").write_text(f"{line}\n", "utf-8")
     with pytest.raises(InputError, match=re.escape(told)):
         read_requirements(doorstop)
+
+
+@pytest.mark.parametrize("word", ["false", "False", "FALSE", "no", "No", "NO", "off", "Off", "OFF"])
+def test_an_item_is_off_with_every_word_of_yaml_for_it(doorstop: Path, word: str) -> None:
+    (doorstop / "TOP001.yml").write_text(f"active: {word}\ntext: gone\n", "utf-8")
+    assert "TOP001" not in [x.id for x in read_requirements(doorstop).requirements]
+
+
+def test_every_key_of_an_object_in_a_list_is_a_link(doorstop: Path) -> None:
+    (doorstop / "TOP001.yml").write_text("text: safe\nlinks:\n- A: x\n  B: y\n- {C: z, D: z}\n- E\n", "utf-8")
+    told = "\n".join(read_requirements(doorstop).notes)
+    assert all(f"TOP001 is derived from {name}, which is not here" in told for name in "ABCDE")
+
+
+def test_a_file_of_many_keys_is_read(doorstop: Path) -> None:
+    (doorstop / "TOP001.yml").write_text(
+        "text: safe\n" + "".join(f"k{i}: x\n" for i in range(60_000)), "utf-8"
+    )
+    assert "TOP001" in [x.id for x in read_requirements(doorstop).requirements]
 
 
 def test_a_folder_that_is_none_of_doorstop_is_refused(tmp_path: Path) -> None:

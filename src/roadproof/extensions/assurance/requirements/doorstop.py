@@ -34,7 +34,8 @@ def read_doorstop(folder: Path) -> Requirements:
 
 
 def _is_off(item: Mapping[str, Value], name: str) -> bool:
-    return item.get(name) in ("false", "False", "no", "off")
+    value = item.get(name)
+    return isinstance(value, str) and value.lower() in ("false", "no", "off")  # as in YAML 1.1
 
 
 def _requirement(path: Path, item: Mapping[str, Value]) -> Requirement:

@@ -14,7 +14,7 @@ LARGEST = 1_000_000
 
 
 class Item(NamedTuple):
-    """An item of a list: a text, or the first key of an object with its value."""
+    """A part of a list or an object: a text, or a key with its value."""
 
     text: str
     value: str | None = None
@@ -27,12 +27,14 @@ class _Loader(yaml.BaseLoader):  # type: ignore[misc]
     """Reads scalars as texts; refuses a key that is given twice, parts that are repeated, and tags."""
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
-        names = [self.construct_object(name, deep=True) for name, _ in node.value]
-        for (place, _), name in zip(node.value, names, strict=True):
-            if names.count(name) > 1:
+        given: set[str] = set()
+        for place, _ in node.value:
+            name = str(self.construct_object(place, deep=True))
+            if name in given:
                 raise yaml.constructor.ConstructorError(
                     None, None, f"the key '{name}' is given twice", place.start_mark
                 )
+            given.add(name)
         made: dict[Any, Any] = super().construct_mapping(node, deep)
         return made
 
@@ -47,15 +49,18 @@ class _Loader(yaml.BaseLoader):  # type: ignore[misc]
 def read_yaml(path: Path) -> dict[str, Value]:
     """The keys of a file with their values, all as texts. Raises ``InputError`` with the line.
 
-    An object comes as a list of its keys with their values.
+    An object comes as a list of its keys with their values, in a list as well.
     """
     text = read_text(path, LARGEST, "an item of requirements is smaller")
     try:
         content = yaml.load(text, _Loader)
+    except RecursionError:
+        raise InputError(f"{path}: its parts lie too deep in each other") from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = "" if mark is None else f", line {mark.line + 1}"
-        raise InputError(f"{path}{where}: it is no YAML: {getattr(error, 'problem', error)}") from None
+        told = " ".join(str(getattr(error, "problem", error)).split())
+        raise InputError(f"{path}{where}: it is no YAML: {told}") from None
     if content in (None, ""):
         return {}
     if not isinstance(content, dict):
@@ -64,16 +69,15 @@ def read_yaml(path: Path) -> dict[str, Value]:
 
 
 def _value(value: object) -> Value:
+    if isinstance(value, list):
+        return tuple(item for x in value for item in _items(x))
+    return _items(value) if isinstance(value, dict) else _text(value)
+
+
+def _items(value: object) -> tuple[Item, ...]:
     if isinstance(value, dict):
         return tuple(Item(str(name), _text(said)) for name, said in value.items())
-    return tuple(map(_item, value)) if isinstance(value, list) else _text(value)
-
-
-def _item(value: object) -> Item:
-    if isinstance(value, dict) and value:
-        name, said = next(iter(value.items()))
-        return Item(str(name), _text(said))
-    return Item(_text(value))
+    return (Item(_text(value)),)
 
 
 def _text(value: object) -> str:
