@@ -10,7 +10,7 @@ from functools import reduce
 from typing import assert_never
 
 from roadproof.errors import InputError
-from roadproof.extensions.kernel.names import comment, literal, q, quoted
+from roadproof.extensions.kernel.names import comment, literal, q, quoted, zone
 from roadproof.extensions.kernel.world import WORDS_OF_SIGNALS
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -21,7 +21,6 @@ from roadproof.logic.terms import Term
 
 _SIZES = {"length": "Length", "width": "Width", "kind": "Kind"}
 _COMPARISONS: Mapping[f.Comparison, str] = {"<": "LT", "<=": "LE", ">": "GT", ">=": "GE"}
-_ZONES = ("main", "merge", "depart")
 _OUTSIDE: Mapping[str, int] = {}
 
 
@@ -162,8 +161,6 @@ def _domain(domain: f.Domain, bound: Mapping[str, int]) -> str:
         case "lanelets":
             return f"(Lanelets {_road(domain.of, bound)})"
         case "zone":
-            if domain.of not in _ZONES:
-                raise InputError(f"zone={domain.of[:40]}: there are {', '.join(_ZONES)}")
-            return f"(Zone {domain.of})"
+            return f"(Zone {zone(domain.of)})"
         case _:
             assert_never(domain.kind)

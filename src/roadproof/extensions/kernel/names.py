@@ -14,6 +14,7 @@ from roadproof.errors import InputError
 _PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
 _STRANGE = re.compile(r"[^A-Za-z0-9_]", re.ASCII)
 LONGEST = 200
+_ZONES = ("main", "merge", "depart")
 
 # Every word that a printed file says beside the names of the claim: Coq's, the notations', the theories'.
 _SAID = """
@@ -90,6 +91,13 @@ class Names:
         found = _apart(name, self.taken | self.things | set(scope))
         self.bound.add(found)
         return found
+
+
+def zone(name: str) -> str:
+    """The name of a zone. Raises ``InputError`` for one that proofs/kernel/Meaning.v lacks."""
+    if name not in _ZONES:
+        raise InputError(f"zone={name[:40]}: there are {', '.join(_ZONES)}")
+    return name
 
 
 def _apart(name: str, others: Collection[str]) -> str:

@@ -13,7 +13,7 @@ from typing import assert_never
 
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import up_to_variables
-from roadproof.extensions.kernel.names import Names, literal
+from roadproof.extensions.kernel.names import Names, literal, zone
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
@@ -22,7 +22,6 @@ from roadproof.logic.terms import Term
 
 # Words of Text.v, which are those of the language; a new signal has none there.
 _SAID_OF_VEHICLES = frozenset(re.findall(r"\w+", "s d v_lon v_lat a_lon a_lat j_lon length width kind"))
-_ZONES = ("main", "merge", "depart")
 
 # What a definition calls its arguments, with their sorts; only names depend on it.
 Formals = Mapping[str, Sequence[tuple[str, str]]]
@@ -246,9 +245,7 @@ class Printer:
             case "lanelets":
                 return f"(lanelets {self.road(domain.of, scope)})"
             case "zone":
-                if domain.of not in _ZONES:
-                    raise InputError(f"zone={domain.of[:40]}: there are {', '.join(_ZONES)}")
-                return f"(zone {domain.of})"
+                return f"(zone {zone(domain.of)})"
             case _:
                 assert_never(domain.kind)
 

@@ -9,6 +9,7 @@ from roadproof.evidence.answer_files import OwnEvidence
 from roadproof.evidence.checking import other_readings
 from roadproof.evidence.codec import Doc
 from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.extensions.drivers.preventable.plate import Line, Plate
 from roadproof.library.bind import default_values
 from roadproof.library.specification import Library
 from roadproof.reasons import NO_REASON, Why
@@ -17,8 +18,6 @@ from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:
     from roadproof.evidence.claim import Claim
-
-from roadproof.extensions.drivers.preventable.plate import Line, Plate
 
 BOUNDARY: Final = "roadproof/boundary/1"
 
