@@ -79,3 +79,9 @@ def test_the_list_of_extensions_is_what_its_schema_says(capsys: pytest.CaptureFi
     told = capsys.readouterr().out
     assert all(f"  {name} " in told for name in installed())
     assert "incubating: storyboards of OpenSCENARIO, which are run here" in told
+
+
+def test_every_room_has_a_module() -> None:
+    homes = [x.parent for x in (ROOT / "src/roadproof").glob("*/__init__.py")]
+    assert homes
+    assert [x.name for x in homes if not any(y.name != "__init__.py" for y in x.rglob("*.py"))] == []

@@ -1,4 +1,4 @@
 """Finders of proofs and drives. Others check their answers: certificates in evidence, drives in semantics.
 
-May import evidence, drivers, semantics, library, world and logic.
+May import evidence, semantics, library, world and logic.
 """

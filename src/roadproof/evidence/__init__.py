@@ -1,4 +1,4 @@
 """Certificates, drive files and kept answers: written, read strictly and checked without the finders.
 
-May import drivers, semantics, library, world and logic; never engines.
+May import semantics, library, world and logic; never engines.
 """

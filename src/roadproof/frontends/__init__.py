@@ -1,4 +1,4 @@
-"""What users see: the Python API, the command line, the studio, and reports.
+"""The Python API, the command line and reports.
 
-May import everything; nothing imports it.
+May import all rooms of the core, of which none imports it; extensions do.
 """

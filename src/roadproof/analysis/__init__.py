@@ -1,4 +1,0 @@
-"""Questions about many formulas or drives: overlap, order, redundancy, coverage, classes, catalogues.
-
-May import all but frontends.
-"""
