@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
 
-.PHONY: test long demo docs man fresh browser evidence evidence-check extract findings interop release mutants fuzz lint unit format clean
+.PHONY: test long alone demo docs man fresh browser evidence evidence-check generated findings interop release mutants fuzz lint unit format clean
 
 test: lint unit
 
@@ -23,6 +23,12 @@ unit: $(READY)
 # The tests that take long (tests/lengthy.txt), which make test leaves out; CI runs both.
 long: $(READY)
 	ROADPROOF_EXAMPLES=full $(BIN)/python -m pytest -n $(JOBS) --dist worksteal --maxfail 5 -q -rs -m long
+
+# The core in a tree of its own, without extensions and with its own packages: it proves, searches and checks.
+alone: $(READY)
+	rm -rf out/alone
+	mkdir -p out
+	PYTHONPATH=tests $(BIN)/python -m core.alone --tests out/alone
 
 # Proofs, drives, a matrix, an evaluated recording, and one page about all of it; at most 3 minutes.
 DEMO := out/demo
@@ -51,9 +57,10 @@ evidence: $(READY)
 evidence-check: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m shipping --check $(ARGS)
 
-# proofs/kernel/ocaml/checker.ml again, after a change of the checkers in proofs/kernel: needs coqc.
-extract: $(READY)
-	PYTHONPATH=tests $(BIN)/python -m extensions.kernel.extract
+# All files that are made from the source, again: schemas, keyword arguments, tables and drawings of documents, and
+# with coqc the extracted program. ARGS=--check compares only; the table of them is tests/documents/generated.py.
+generated: $(READY)
+	PYTHONPATH=tests $(BIN)/python -m documents.generated $(ARGS)
 
 # Every command of the README, typed into the login shell of a user who has nothing but a fresh clone.
 fresh: $(READY)

@@ -81,7 +81,7 @@ def samples_of(source: CSource, batch: Batch) -> np.ndarray:
         match leaf:
             case t.Size(name, vehicle):
                 made[field.name] = batch.sizes[name, vehicle][:, None]
-            case t.Signal(name, vehicle) | t.Own(name, vehicle):
+            case t.Signal(name, vehicle) | t.CustomSignal(name, vehicle):
                 made[field.name] = batch.signals[name, vehicle].T
             case _:
                 made[field.name] = given[leaf].T

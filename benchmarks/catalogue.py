@@ -14,8 +14,8 @@ from pathlib import Path
 
 import roadproof as rp
 from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
-from roadproof.extensions.catalogue.entries import Concrete, Freedom
-from roadproof.extensions.catalogue.showing import show
+from roadproof.extensions.catalogue.entries import ConcreteTest, Freedom
+from roadproof.extensions.catalogue.judge_test import judge_test
 
 THOUSAND = 1000
 
@@ -40,7 +40,8 @@ def main() -> None:
         assert not found.missing
         thousand = put(place / "thousand", drives, THOUSAND)
         found = told(f"{THOUSAND} drives", thousand)
-        alone = {path.stem: show(Concrete("", str(path)), found.study.asked, Freedom()) for path in drives}
+        formulas = found.view.formulas
+        alone = {path.stem: judge_test(ConcreteTest("", str(path)), formulas, Freedom()) for path in drives}
         for x in found.concrete:
             assert x.names == alone[x.entry.id.rpartition("~")[0]].names
         print(f"  each shows what it shows by itself; {len(found.tested.alike)} groups say the same")

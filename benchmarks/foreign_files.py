@@ -27,8 +27,8 @@ from roadproof.errors import RoadproofError
 from roadproof.extensions.exchange.commonroad import read_commonroad
 from roadproof.extensions.exchange.commonroad_obstacles import ObstacleRules, read_obstacles
 from roadproof.extensions.maps.roads import all_stretches
+from roadproof.extensions.maps.xml_reader import read_xml
 from roadproof.extensions.traffic.formats.reliable import LEFT_OUT
-from roadproof.runtime.xml_reader import read_xml
 
 ENDINGS = (".xml", ".xodr", ".osm")
 

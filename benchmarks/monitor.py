@@ -22,7 +22,7 @@ from time import perf_counter
 
 import numpy as np
 
-from roadproof.extensions.traffic.evaluate.recursive import Trace, TraceReader, answer
+from roadproof.extensions.traffic.evaluate.recursive import SampledTrace, TraceReader, answer
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.loading import bundled_library
@@ -31,7 +31,7 @@ from roadproof.logic.formula import Application, Formula, subformulas
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.semantics.sampled import Batch, Monitor, compile
 from roadproof.semantics.sampled.boolean import unpack
-from roadproof.semantics.sampled.semantics import interval_steps
+from roadproof.semantics.sampled.lattice import interval_steps
 
 SCENARIOS = (1, 3, 4, 5, 6, 7, 8)
 LANE_WIDTH = 3.5
@@ -96,9 +96,9 @@ def random_batch(formulas: dict[str, Formula], traces: int, samples: int, seed: 
     return Batch(Fraction(1, 25), lengths, signals, sizes, given)
 
 
-def trace_of(batch: Batch, index: int) -> Trace:
+def trace_of(batch: Batch, index: int) -> SampledTrace:
     length = int(batch.lengths[index])
-    return Trace(
+    return SampledTrace(
         batch.dt,
         length,
         {key: values[:length, index].tolist() for key, values in batch.signals.items()},

@@ -16,7 +16,7 @@ from functools import partial
 from multiprocessing.connection import Connection
 
 from roadproof.engines.prove.prover import prove
-from roadproof.engines.solve.smt import ask
+from roadproof.engines.solve.smt import check_sat
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.times import moment_of
 from roadproof.library.elaborate import read_claim
@@ -116,7 +116,7 @@ def limited(script: str, solver: str, limit: float) -> str:
     """The solver's answer within ``limit`` seconds, in a process that can be stopped."""
 
     def work(pipe: Connection) -> None:
-        pipe.send(ask(script, solver))
+        pipe.send(check_sat(script, solver))
 
     here, there = multiprocessing.Pipe()
     process = multiprocessing.get_context("fork").Process(target=work, args=(there,))

@@ -21,7 +21,11 @@ from roadproof.errors import InputError
 from roadproof.extensions.exchange.openscenario import RATE
 from roadproof.extensions.exchange.storyboard.distributions import scenarios_of
 from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording
-from roadproof.extensions.traffic.evaluate.questions import Questions, ask, default_settings
+from roadproof.extensions.traffic.evaluate.questions import (
+    EvaluationQuestions,
+    compile_questions,
+    default_settings,
+)
 from roadproof.extensions.traffic.formats.sources import find_source
 
 
@@ -49,7 +53,7 @@ def storyboards(folder: Path) -> Iterator[Path]:
             yield path
 
 
-def judge(folder: Path, path: Path, questions: Questions) -> Row:
+def judge(folder: Path, path: Path, questions: EvaluationQuestions) -> Row:
     """Run and judge a file."""
     begun = time.perf_counter()
     try:
@@ -76,7 +80,7 @@ def main() -> int:
     parser.add_argument("folders", nargs="+", type=Path)
     parser.add_argument("--out", type=Path, default=Path("storyboards.csv"))
     args = parser.parse_args()
-    questions = ask(default_settings(), RATE)
+    questions = compile_questions(default_settings(), RATE)
     rows = [judge(folder, path, questions) for folder in args.folders for path in storyboards(folder)]
     with args.out.open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, [x.name for x in fields(Row)])

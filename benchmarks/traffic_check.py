@@ -13,10 +13,10 @@ import time
 from pathlib import Path
 
 from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.evaluate.questions import compile_questions, default_settings
 from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from extensions.traffic.reference import Reference, Row
@@ -44,12 +44,14 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=1)
     args = parser.parse_args()
-    questions = ask(default_settings(), 25)
+    questions = compile_questions(default_settings(), 25)
     wrong = traces = matches = 0
     begun = time.perf_counter()
     for number in range(1, args.recordings + 1):
         lanes = 2 + number % 2
-        recording = simulate(Traffic(seconds=args.seconds, lanes=lanes, lane_width=3.5), args.seed, number)
+        recording = simulate(
+            TrafficSettings(seconds=args.seconds, lanes=lanes, lane_width=3.5), args.seed, number
+        )
         findings = evaluate_recording(recording, questions)
         fast: set[Row] = {
             (m.sv, m.pov, m.pov2, m.lane, m.start_frame, m.end_frame, m.min_danger, m.set_name, m.scenario)

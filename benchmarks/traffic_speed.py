@@ -23,7 +23,7 @@ from roadproof.extensions.traffic.formats.highd import SAMPLE_KINDS
 from roadproof.extensions.traffic.formats.table import polars_module
 from roadproof.extensions.traffic.formats.write_highd import write_highd
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 from roadproof.runtime.executors import Executor
 
 
@@ -37,7 +37,7 @@ def make(folder: Path, number: int, length: float) -> float | None:
     """Seconds that simulating and writing took; None where the recording is there already."""
     if (folder / f"{number:02d}_tracks.csv").exists():
         return None
-    return seconds(lambda: write_highd(simulate(Traffic(seconds=length), 34502, number), folder))
+    return seconds(lambda: write_highd(simulate(TrafficSettings(seconds=length), 34502, number), folder))
 
 
 def processor_seconds() -> float:

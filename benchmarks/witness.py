@@ -11,15 +11,16 @@ import time
 from dataclasses import replace
 from fractions import Fraction
 
-from roadproof.engines.encode.build import NONE, encode_formula, frame
-from roadproof.engines.encode.motion import Layout, own_columns
-from roadproof.engines.search.ask import ask
-from roadproof.engines.search.outcome import Outcome, Search
+from roadproof.engines.encode.build import NO_MARGIN, assemble_problem, encode_formula
+from roadproof.engines.encode.motion import ColumnLayout, custom_signal_ranges
+from roadproof.engines.search.drive_search import search_drive
+from roadproof.engines.search.outcome import SearchOutcome
 from roadproof.engines.search.question import pose
+from roadproof.engines.setting import Search
 from roadproof.engines.solve.exact import solve_exactly
-from roadproof.engines.solve.milp import prepare
+from roadproof.engines.solve.milp import preload_solvers
 from roadproof.library.loading import bundled_library
-from roadproof.library.scenarios import Scenario, applied
+from roadproof.library.scenarios import Scenario, apply_scenario
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
@@ -31,16 +32,16 @@ def main() -> None:
     parser.add_argument("--sets", default="base")
     parser.add_argument("--z3", type=float, default=60.0, metavar="LIMIT", help="seconds for z3, 0 for none")
     args = parser.parse_args()
-    prepare()
+    preload_solvers()
     library = bundled_library()
     rows, answers = [], {}
     print(f"{'set':5} {'row':>3}  verdict      " + "".join(f"{s:>8}" for s in STAGES) + "   z3 exact")
     for set_name in args.sets.split(","):
         for number in range(1, 25):
             specification = library.select(set_name)
-            query = applied(specification, Scenario(number, set_name))
+            query = apply_scenario(specification, Scenario(number, set_name))
             asked = Search(specification, query, scenario=number)
-            outcome = ask(asked)
+            outcome = search_drive(asked)
             rows.append(outcome)
             shown = "".join(f"{outcome.seconds.get(s, 0.0):8.3f}" for s in STAGES)
             beside = ""
@@ -61,7 +62,7 @@ def main() -> None:
     print(f"peak memory {peak:.0f} MiB")
 
 
-def lanes_of(outcome: Outcome) -> dict[str, str]:
+def lanes_of(outcome: SearchOutcome) -> dict[str, str]:
     """The lane that the drive was judged with."""
     return dict(outcome.drives[0].file.lanes) if outcome.drives else {}
 
@@ -69,13 +70,13 @@ def lanes_of(outcome: Outcome) -> dict[str, str]:
 def plainly(search: Search, lanes: dict[str, str], limit: float) -> tuple[float, str]:
     """Seconds and answer of z3 on the exact encoding of the same question, on the same grid."""
     question = pose(search.specification.library, search.query, search.setting)
-    assumptions = replace(question.assumptions.plain(), margin=NONE, inside=Fraction(0))
+    assumptions = replace(question.assumptions.plain(), margin=NO_MARGIN, inside=Fraction(0))
     grid = question.grid
     begun = time.perf_counter()
     formula, vehicles = question.bound(lanes), question.vehicles
-    layout = Layout(tuple(vehicles), grid, own_columns(formula))
+    layout = ColumnLayout(tuple(vehicles), grid, custom_signal_ranges(formula))
     wanted = encode_formula(formula, vehicles, layout, assumptions)
-    problem = frame(wanted, question.road, vehicles, layout, assumptions)
+    problem = assemble_problem(wanted, question.road, vehicles, layout, assumptions)
     status = solve_exactly(problem, Effort(limit).meter()).status
     return time.perf_counter() - begun, {"found": "sat", "infeasible": "unsat"}.get(status, "gave up")
 

@@ -15,17 +15,15 @@ import signal
 import sys
 from collections.abc import Iterator
 from importlib import import_module
-from typing import Any
 
 import pytest
 from hypothesis import settings
 
 import roadproof
-from extensions.pages.studio.browser import browsing
+from cached_search import ask_once
 from lengthy import COLLECTED, LENGTHY
-from once import ask_once
 from one_process import work_here
-from roadproof.runtime.memory import collect_rarely
+from roadproof.runtime.worker import collect_rarely
 from sharing import HOMES
 
 os.environ["ROADPROOF_KNOWN"] = "off"
@@ -68,12 +66,5 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> None:
 @pytest.fixture(scope="module")
 def searched_once() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("roadproof.engines.search.ask._ask", ask_once)
+        patch.setattr("roadproof.engines.search.drive_search._search_drive", ask_once)
         yield
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    """A real browser, for tests that are skipped where there is none."""
-    with browsing() as made:
-        yield made

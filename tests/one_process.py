@@ -13,13 +13,13 @@ from roadproof.runtime.executors import Executor, LostJob
 
 Job = TypeVar("Job")
 Answer = TypeVar("Answer")
-_in_processes = dispatch.answers_of
+_in_processes = dispatch.run_jobs
 
 
-def answers_of(
+def run_jobs(
     function: Callable[[Job], Answer], jobs: Sequence[Job], hands: Executor, fresh: bool = False
 ) -> Generator[tuple[int, Answer | LostJob], None, None]:
-    """As ``dispatch.answers_of``; with one process, or as many as there are cores, none is started."""
+    """As ``dispatch.run_jobs``; with one process, or as many as there are cores, none is started."""
     if hands.cluster is not None or hands.processes not in (None, 1):
         yield from _in_processes(function, jobs, hands, fresh)
         return
@@ -33,5 +33,5 @@ def answers_of(
 
 
 def work_here() -> None:
-    """Before anything imports ``dispatch.answers_of`` by name."""
-    dispatch.answers_of = answers_of
+    """Before anything imports ``dispatch.run_jobs`` by name."""
+    dispatch.run_jobs = run_jobs

@@ -1,13 +1,25 @@
 """Folders that one process makes and all processes of a run of tests read."""
 
-from collections.abc import Callable
+import fcntl
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from shutil import rmtree
 
-from roadproof.runtime.cache import one_at_a_time
-
 HOMES: list[Path] = []
 """The folder of this run, which all of its processes have (see conftest.py)."""
+
+
+@contextmanager
+def one_at_a_time(folder: Path) -> Iterator[None]:
+    """Wait until no other process works in a folder."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
 
 
 def made_once(name: str, make: Callable[[Path], object]) -> Path:

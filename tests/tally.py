@@ -1,11 +1,12 @@
-"""Counts the figures of docs/explanation/tests.md in the repository: ``python -m tally`` writes them.
+"""Counts the figures of docs/explanation/tests.md in the repository, each a table of docs/data/tests.
 
-Each is a table of docs/data/tests. Nothing is run for them but pytest's collection, and that only to count
-planted faults.
+``make generated`` writes those that are counted from files. ``python -m tally`` also writes the number of
+planted faults, for which pytest collects all tests.
 """
 
 import ast
 import csv
+import io
 import json
 import re
 import subprocess
@@ -16,11 +17,12 @@ from pathlib import Path
 
 from console import sessions_of
 from mutants import journal
-from mutants.by_hand import Condition, conditions
+from mutants.by_hand import Condition, conditions, read_results
 from mutants.choose import folder_of
 
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "docs/data/tests"
+PACKAGE = ROOT / "src/roadproof"
 PLANTED = ("fault", "planted", "mutant", "noticed")
 """A test case with one of these words in its name plants a fault in the program and asks to be told of it."""
 
@@ -31,13 +33,15 @@ Table = list[list[str]]
 
 def main() -> int:
     for name, table in {**TABLES, "planted": planted}.items():
-        write(FOLDER / f"{name}.csv", table())
+        (FOLDER / f"{name}.csv").write_text(text(table()), "utf-8")
     return 0
 
 
-def write(path: Path, table: Table) -> None:
-    with path.open("w", encoding="utf-8", newline="") as file:
-        csv.writer(file, lineterminator="\n").writerows(table)
+def text(table: Table) -> str:
+    """Return a table as CSV."""
+    file = io.StringIO()
+    csv.writer(file, lineterminator="\n").writerows(table)
+    return file.getvalue()
 
 
 def read(path: Path) -> Table:
@@ -81,10 +85,10 @@ def fuzz() -> Table:
 
 
 def mutants() -> Table:
-    """A row for each folder: faults tried and what became of them."""
+    """A row for each folder: faults tried in functions that are as they were, and what became of them."""
     counted: dict[str, Counter[str]] = {}
     equivalent = journal.equivalents()
-    for line in journal.read().values():
+    for line in journal.of_present_source(journal.read().values(), PACKAGE):
         verdict = "equivalent" if line.key in equivalent else line.verdict
         counted.setdefault(folder_of(line.file), Counter())[verdict] += 1
     counted["all"] = sum(counted.values(), Counter())
@@ -94,17 +98,20 @@ def mutants() -> Table:
 
 
 def rim() -> Table:
-    """A row for each room of conditions: conditions, faults planted against them, and equivalent ones."""
+    """A row for each room of conditions: conditions, faults planted against them, and what came out."""
     by_room: dict[str, list[Condition]] = {}
     for each in conditions():
         by_room.setdefault(each.faults[0].room, []).append(each)
     by_room["all"] = conditions()
-    body = []
+    body, results = [], read_results()
     for room, those in by_room.items():
-        equivalent = sum(bool(x.equivalent) for each in those for x in each.faults)
-        faults = sum(len(each.faults) for each in those)
-        body.append((room.replace("_", " "), len(those), faults - equivalent, equivalent))
-    return rows(("room", "conditions", "faults", "equivalent"), body)
+        faults = [x for each in those for x in each.faults if not x.equivalent]
+        equivalent = sum(len(each.faults) for each in those) - len(faults)
+        verdicts = Counter(results.get(x.key, "") for x in faults)
+        counts = verdicts["caught"] + verdicts["hung"], verdicts["survived"], verdicts[""]
+        body.append((room.replace("_", " "), len(those), len(faults), equivalent, *counts))
+    head = ("room", "conditions", "faults", "equivalent", "caught", "survived", "not tried")
+    return rows(head, body)
 
 
 def planted() -> Table:

@@ -12,7 +12,7 @@ from roadproof.library.loading import load_library
 from roadproof.library.specification import on_request
 from roadproof.logic import parse
 from roadproof.logic.parse import parse_bundled, parse_library
-from roadproof.runtime.cache import SWITCH, private_folder, remembered
+from roadproof.runtime.cache import SWITCH, cached, private_folder
 
 
 @pytest.fixture(autouse=True)
@@ -24,7 +24,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def make(made_of: bytes = b"one", result: str = "made") -> tuple[str, int]:
     """What is remembered, and how often it was made for that."""
     calls = []
-    found = remembered("thing", made_of, lambda: calls.append(1) or result)
+    found = cached("thing", made_of, lambda: calls.append(1) or result)
     return found, len(calls)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.errors import InputError, LostError, UsageError
+from roadproof.errors import InputError, LostWorkError, UsageError
 from roadproof.runtime import dask_executor
 from roadproof.runtime.executors import Cluster, Executor
 from roadproof.runtime.pool import work
@@ -77,7 +77,7 @@ def test_a_worker_that_ends_costs_at_most_its_own_job(times: int, tmp_path: Path
     found = dict(work(Deadly(tmp_path, times), range(8), HERE, lost))
     assert found == {k: k * k for k in range(8)} | ({3: -3} if times > 1 else {})
     if times > 1:
-        with pytest.raises(LostError, match="4 of 8 jobs: its workers ended each time"):
+        with pytest.raises(LostWorkError, match="4 of 8 jobs: its workers ended each time"):
             list(work(Deadly(tmp_path, times), range(8), HERE))
         end_cluster()  # whether its workers come again depends on how busy the machine is
 

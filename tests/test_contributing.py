@@ -1,4 +1,4 @@
-"""The examples of CONTRIBUTING.md (a signal, an option, a survey) are carried out on a copy of the source."""
+"""The recipes of CONTRIBUTING.md (signal, operator, option, survey) are carried out on a copy of the code."""
 
 import csv
 import json
@@ -16,34 +16,12 @@ TEXT = (ROOT / "CONTRIBUTING.md").read_text()
 CHANGES = re.findall(r"```diff\n(.*?)```", TEXT, re.DOTALL)
 OPTION = re.findall(r"```diff option\n(.*?)```", TEXT, re.DOTALL)
 SURVEY = dict(re.findall(r"`(src/roadproof/\S+\.py)`[^\n]*\n\n```python\n(.*?)```", TEXT, re.DOTALL))
-NEW_NODE = ("Temporal: TypeAlias = Until | Eventually | Always", "@node\nclass Application:")
-READERS_OF_NODES = {
-    *(
-        "semantics/exact/exact.py",
-        "extensions/pages/blame.py",
-        "semantics/exact/robust.py",
-        "logic/initial_conditions.py",
-        "extensions/pages/viewer_data.py",
-        "extensions/traffic/evaluate/recursive.py",
-        "semantics/sampled/semantics.py",
-        "extensions/exchange/streaming/plan.py",
-        "engines/encode/unroll.py",
-    ),
-    *(
-        "engines/prove/grounding.py",
-        "evidence/derivation.py",
-        "evidence/sites.py",
-        "evidence/state.py",
-    ),
-    "library/bind.py",
-    *("logic/formula.py", "logic/rewrite.py", "logic/motion.py", "logic/restore.py"),
-    *(
-        "extensions/kernel/derivations/derive.py",
-        "extensions/kernel/printer.py",
-        "extensions/kernel/constructors.py",
-    ),
-    *("extensions/catalogue/nearest.py", "evidence/periodic.py"),
-}
+OPERATOR = re.findall(r"```diff operator\n(.*?)```", TEXT, re.DOTALL)
+READERS = re.findall(
+    r"^\| `.*", TEXT.partition("## A new temporal operator")[2].partition("\n## ")[0], re.MULTILINE
+)
+READERS_OF_OPERATORS = set(re.findall(r"`(\S+\.py)`", "\n".join(READERS)))
+"""The files in the table of the recipe for a temporal operator."""
 
 
 @pytest.fixture
@@ -68,7 +46,8 @@ def add_survey(copy):
 
 
 def begin(copy, *words):
-    environment = {**os.environ, "PYTHONPATH": str(copy / "src")}
+    paths = os.pathsep.join([str(copy / "src"), str(ROOT / "tests")])
+    environment = {**os.environ, "PYTHONPATH": paths}
     return subprocess.run([sys.executable, *words], env=environment, cwd=copy, capture_output=True, text=True)
 
 
@@ -102,9 +81,7 @@ def test_an_option_touches_two_files(copy):
         roadproof(copy, 0, "witness --help"),
         re.M,
     )
-    remade = run(
-        copy, "from roadproof.frontends.settings import keywords_file as k; print(k.text(k.CORE), end='')"
-    )
+    remade = run(copy, "from documents import keywords_file as k; print(k.text(k.CORE), end='')")
     assert "\n".join(remade) + "\n" == (copy / "src/roadproof/frontends/settings/keywords.py").read_text()
 
 
@@ -137,7 +114,7 @@ def test_an_option_of_other_questions_touches_two_files_too(copy, command):
 
 
 FIELD = {
-    "questions/overlap.py": (
+    "questions/overlap_data.py": (
         (
             "    reason: shared.Reason = NO_REASON\n",
             '    one_set: Annotated[bool, Doc("Whether both are of one spec set.")]\n',
@@ -174,49 +151,54 @@ def test_a_field_of_an_answer_touches_three_files(copy):
     assert [x["one_set"] for x in json.loads((copy / "answer.json").read_text())["verdicts"]] == [True]
     [row] = csv.DictReader((copy / "X/overlap.csv").read_text().splitlines())
     assert row["one_set"] == "True"
-    [schema] = run(
-        copy, "from roadproof.frontends.schemas import schemas; print(dict(schemas())['overlap.json'])"
-    )
+    [schema] = run(copy, "from documents.schemas import schemas; print(dict(schemas())['overlap.json'])")
     assert "Whether both are of one spec set." in schema
     assert "1 of 1 accepted" in roadproof(copy, 0, "check X --jobs 1")
     roadproof(copy, 0, "report X -o page.html")
     assert "<p>of one set: True</p>" in (copy / "page.html").read_text()
 
 
-def test_mypy_names_every_reader_that_forgets_a_signal_or_a_node(copy):
+def errors_of_mypy(copy):
+    """What mypy says of our own modules alone."""
+    options = ["--strict", "src", "--no-site-packages", "--cache-dir", os.devnull]
+    return begin(copy, "-m", "mypy", *options).stdout
+
+
+def files_with(errors, pattern):
+    return set(re.findall(rf"^src/roadproof/(\S+?):\d+: error:.*{pattern}", errors, re.MULTILINE))
+
+
+def test_mypy_names_every_reader_that_forgets_a_signal(copy):
     apply(copy, CHANGES[:1])
     add_survey(copy)
-    tree = copy / "src/roadproof/logic/formula.py"
-    alias, after = NEW_NODE
-    node = '@node\nclass Since:\n    left: "Formula"\n    interval: Interval\n    right: "Formula"\n\n\n'
-    text = tree.read_text()
-    assert text.count(alias) == text.count(after) == 1
-    tree.write_text(text.replace(alias, f"{alias} | Since").replace(after, node + after))
-    asked = ["--strict", "src", "--no-site-packages", "--cache-dir", os.devnull]  # of ours alone
-    command = [sys.executable, "-m", "mypy", *asked]
-    told = subprocess.run(command, cwd=copy, capture_output=True, text=True).stdout
-    assert not re.findall(r"^src/roadproof/\S+/alone.py.*", told, re.MULTILINE)
-    named = set(re.findall(r"^src/roadproof/(\S+?):\d+: error:.*soon", told, re.MULTILINE))
-    assert named == files_in(CHANGES[1:]) - {"world/motion.py"}
-    assert (
-        set(re.findall(r"^src/roadproof/(\S+?):\d+: error:.*Since", told, re.MULTILINE)) == READERS_OF_NODES
-    )
+    errors = errors_of_mypy(copy)
+    assert not re.findall(r"^src/roadproof/\S+/alone.py.*", errors, re.MULTILINE)
+    assert files_with(errors, "soon") == files_in(CHANGES[1:]) - {"world/motion.py"}
 
 
-def test_mypy_names_every_reader_of_a_new_temporal_operator(copy):
-    """Where only the parser knows it, no reader takes it for another: that gave a false PROVED."""
-    old = 'TemporalOperator: TypeAlias = Literal["F", "G", "U"]'
-    forge(copy / "src/roadproof/logic/syntax.py", (old, old.replace('"U"', '"U", "O"')))
-    told = begin(copy, "-m", "mypy", "--strict", "src").stdout
-    found = set(re.findall(r"^src/roadproof/(\S+?):\d+: error:.*[Nn]ever", told, re.MULTILINE))
-    assert {"library/elaboration.py", "evidence/answers/tree.py"} <= found, told
+def test_mypy_names_every_reader_that_the_recipe_for_a_temporal_operator_lists(copy):
+    apply(copy, OPERATOR)
+    forgetful = files_with(errors_of_mypy(copy), '(?:"Never"|Missing return statement)')
+    assert forgetful == READERS_OF_OPERATORS
+
+
+def test_an_operator_that_only_the_parser_knows_is_never_taken_for_another(copy):
+    """A reader once took every operator that it did not know for G, which gave a false PROVED."""
+    apply(copy, OPERATOR)
+    parse = "from roadproof.logic.parse import parse_claim; print(parse_claim({!r}).body.op)"
+    assert run(copy, parse.format("O[1 s, 2 s] v_lon(SV) > 1 m/s")) == ["O"]
+    for claim in ("O true", "G true -> O true", "O[1 s, 2 s] v_lon(SV) > 1 m/s"):
+        for command in ("prove", "witness"):
+            done = begin(copy, "-m", "roadproof", command, claim)
+            assert done.returncode not in (0, 10), done.stdout
+            assert "PROVED" not in done.stdout + done.stderr
 
 
 REFUSALS = """
 from fractions import Fraction as F
 import numpy as np
-from roadproof.engines.encode.along import names_places
-from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.shift_invariance import depends_on_place
+from roadproof.engines.encode.motion import ColumnLayout
 from roadproof.engines.encode.unroll import Grid
 from roadproof.semantics.exact import judge
 from roadproof.logic.latex import latex
@@ -235,8 +217,8 @@ drive = Drive({"SV": Motion(F(4), F(2), F(0), F(3), F(20), F(0), (Piece(None, F(
 cars = {"SV": load_vehicle("car")}
 readers = {
     "judge": lambda: judge(query.formula, drive),
-    "columns": lambda: Layout(("SV",), Grid(F(1), 1)).state("SV", "soon", 0),
-    "places": lambda: names_places(query.formula, cars),
+    "columns": lambda: ColumnLayout(("SV",), Grid(F(1), 1)).state("SV", "soon", 0),
+    "places": lambda: depends_on_place(query.formula, cars),
     "prover": lambda: prove(bundled_library().select(), query),
     "samples": lambda: sample_drive(drive, load_road("main-2"), F(1), F(1), "drive"),
     "monitor": lambda: compile({"it": query.formula}).evaluate(Batch(F(1), np.array([1]))),
@@ -265,10 +247,10 @@ def test_a_reader_that_does_not_know_a_signal_refuses_it_by_name(copy):
 AGREEMENT = """
 from fractions import Fraction as F
 import random
-from roadproof.engines.encode.along import names_places
-from roadproof.engines.encode.build import NONE, ground
+from roadproof.engines.encode.shift_invariance import depends_on_place
+from roadproof.engines.encode.build import NO_MARGIN, ground_atoms
 from roadproof.engines.encode.problem import evaluate
-from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.motion import ColumnLayout
 from roadproof.engines.encode.unroll import Grid, unroll
 from roadproof.semantics.exact import judge
 from roadproof.semantics.sampled import compile
@@ -282,7 +264,7 @@ from roadproof.world.motion import state_at
 
 STEPS = 4
 base, road, car = bundled_library().select(), load_road("main-2"), load_vehicle("car")
-layout = Layout(("POV", "SV"), Grid(F(1), STEPS))
+layout = ColumnLayout(("POV", "SV"), Grid(F(1), STEPS))
 cars = dict.fromkeys(layout.vehicles, car)
 held = {name: set() for name in ("judge", "monitor", "grid", "meant")}
 dice = random.Random(7)
@@ -298,7 +280,7 @@ def answers(formula, motions):
     yield "judge", judge(formula, motions).holds
     trace = sample_drive(motions, road, F(STEPS), F(1), "drive")
     yield "monitor", bool(compile({"it": formula}).evaluate(trace.batch, "clip").answers["it"].true[0])
-    circuit = ground(unroll(formula, layout.grid), cars, layout, NONE)
+    circuit = ground_atoms(unroll(formula, layout.grid), cars, layout, NO_MARGIN)
     values = {
         layout.column(name, signal, k): getattr(state_at(motion, F(k)), signal)
         for name, motion in motions.vehicles.items() for signal in STARTING for k in range(STEPS + 1)
@@ -324,8 +306,8 @@ for case in range(60):
         assert answer == expected, (reader, text, answer)
         held[reader].add(answer)
 assert all(held[reader] == {True, False} for reader in ("judge", "monitor", "grid")), held
-assert names_places(read_claim(base, "soon(SV) > 9 m").formula, cars)
-assert not names_places(read_claim(base, "soon(SV) > s(POV)").formula, cars)
+assert depends_on_place(read_claim(base, "soon(SV) > 9 m").formula, cars)
+assert not depends_on_place(read_claim(base, "soon(SV) > s(POV)").formula, cars)
 """
 ASKED = ("F soon(SV) > s(POV) + 40 m", "soon(SV) > 60 m and s(SV) < 41 m")
 WITNESS = "from roadproof.frontends.cli.main import main\nraise SystemExit(main(['witness', {!r}]))"

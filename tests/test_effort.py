@@ -30,8 +30,8 @@ def test_a_part_spends_from_the_whole_and_has_no_more_than_it():
     assert (whole.left(), part.left()) == (7, 1)
     part.part(100).spend(2)
     assert (whole.left(), part.left()) == (5, 0)
-    assert part.is_out()
-    assert not whole.is_out()
+    assert part.is_exhausted()
+    assert not whole.is_exhausted()
     whole.spend(6)
     assert whole.left() == whole.part(4).left() == 0
 
@@ -39,7 +39,7 @@ def test_a_part_spends_from_the_whole_and_has_no_more_than_it():
 def test_a_meter_apart_spends_on_its_own_account():
     whole = Effort(2).meter()
     whole.spend(5)
-    apart = whole.apart(3)
+    apart = whole.separate(3)
     assert apart.left() == 3
     apart.spend(1)
     assert whole.spent == 5
@@ -54,14 +54,14 @@ def test_the_reason_names_the_limit_that_was_reached():
     assert part.reason() == "no answer within 10 units of work"
 
 
-@pytest.mark.parametrize("made", [Budget.part, Budget.apart])
+@pytest.mark.parametrize("made", [Budget.part, Budget.separate])
 def test_what_the_clock_cuts_off_is_late(clock, made):
     meter = made(Effort(10, 3.0).meter(), 4)
     clock.now = 2.5
     assert meter.seconds_left() == 0.5
-    assert not meter.is_out()
+    assert not meter.is_exhausted()
     clock.now = 3.0
-    for ask in (meter.seconds_left, meter.is_out):
+    for ask in (meter.seconds_left, meter.is_exhausted):
         with pytest.raises(BudgetExceeded, match=r"cut off by the clock after 3 s, .*raise --timeout"):
             ask()
 
@@ -69,13 +69,13 @@ def test_what_the_clock_cuts_off_is_late(clock, made):
 def test_work_alone_never_makes_an_answer_late(clock):
     meter = Effort(1, 3.0).meter()
     meter.spend(1e6)
-    assert meter.is_out()
+    assert meter.is_exhausted()
 
 
 def test_the_backstop_follows_from_the_work_unless_it_is_given(clock):
     assert Effort(60).meter().seconds_left() == backstop(60) == 3600
     assert Effort(0.1).meter().seconds_left() == backstop(0.1) == 600
-    assert Effort(60, 7.0).of(1).meter().seconds_left() == 7
+    assert Effort(60, 7.0).with_units(1).meter().seconds_left() == 7
 
 
 def test_lateness_comes_back_from_another_process():
@@ -86,17 +86,21 @@ def test_lateness_comes_back_from_another_process():
 
 
 def test_the_seconds_of_a_timeout_run_over_all_meters_of_a_running_effort(clock):
-    running = Effort(10, timeout=20).running()
+    running = Effort(10, timeout=20).with_clock_started()
     clock.now = 12
-    assert running.of(1).meter().seconds_left() == running.running().meter().seconds_left() == 8
+    assert (
+        running.with_units(1).meter().seconds_left()
+        == running.with_clock_started().meter().seconds_left()
+        == 8
+    )
     clock.now = 21
     with pytest.raises(BudgetExceeded, match="after 20 s"):
-        running.of(5).meter().is_out()
+        running.with_units(5).meter().is_exhausted()
     assert Effort(10, timeout=20).meter().seconds_left() == 20
 
 
 def test_without_a_timeout_each_meter_has_its_own_backstop(clock):
-    running = Effort(10).running()
+    running = Effort(10).with_clock_started()
     clock.now = 500
     assert running.meter().seconds_left() == backstop(10)
 
@@ -104,8 +108,8 @@ def test_without_a_timeout_each_meter_has_its_own_backstop(clock):
 def test_when_an_effort_began_is_no_part_of_it(clock):
     clock.now = 7
     effort = Effort(10, timeout=20)
-    assert effort.running() == effort
-    assert repr(effort.running()) == repr(effort)
+    assert effort.with_clock_started() == effort
+    assert repr(effort.with_clock_started()) == repr(effort)
 
 
 @pytest.mark.parametrize(

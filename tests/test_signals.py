@@ -35,7 +35,7 @@ def test_the_table_has_every_name_and_no_other():
 
 def test_what_the_list_says_is_where_it_says():
     assert set(STARTING) <= fields(Motion)
-    assert {x for x, about in SIGNALS.items() if about.kept == "piece"} == fields(Piece) - {"duration"}
+    assert {x for x, about in SIGNALS.items() if about.stored == "piece"} == fields(Piece) - {"duration"}
     assert set(RECORDED) | set(SIZES) <= fields(Recording)
     assert set(LIMITED) | set(SIZES) <= fields(Vehicle)
     assert all(hasattr(State(*map(Fraction, range(8))), name) for name in SIGNALS)

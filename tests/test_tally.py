@@ -12,11 +12,6 @@ from mutants.__main__ import PACKAGE
 from mutants.choose import faults_of, targets
 
 
-@pytest.mark.parametrize("name", tally.TABLES)
-def test_the_page_tells_what_was_counted(name: str) -> None:
-    assert tally.read(tally.FOLDER / f"{name}.csv") == tally.TABLES[name](), "python -m tally writes it anew"
-
-
 def test_no_fault_is_planted_less_than_told(request: pytest.FixtureRequest) -> None:
     """Only where all tests are collected: fewer files say nothing."""
     items = request.config.stash[COLLECTED]

@@ -36,9 +36,8 @@ def test_the_gravest_outcome_gives_the_exit_code(outcomes: list[tuple[Verdict, V
 def test_every_verdict_and_exit_code_is_explained() -> None:
     page = (Path(__file__).parents[1] / "docs/explanation/meaning.md").read_text("utf-8")
     assert {str(verdict) for verdict in Verdict} <= set(re.findall(r"`([A-Z-]+)`", page))
-    listed = page.partition("Exit codes: ")[2].partition("\n")[0]
-    told = [int(entry.split()[0]) for entry in listed.split(" · ")]
-    assert sorted(told) == sorted(ExitCode)
+    codes = (Path(__file__).parents[1] / "docs/reference/exit-codes.md").read_text("utf-8")
+    assert sorted(map(int, re.findall(r"^\| (\d+) \|", codes, re.MULTILINE))) == sorted(ExitCode)
 
 
 def test_a_long_line_is_cut_around_the_mistake() -> None:
@@ -57,10 +56,10 @@ def test_the_nearest_reader_says_where() -> None:
 def test_shipped_folders_are_found_in_a_checkout_and_in_a_wheel(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert (package_data.shipped("models") / "roads" / "main-2.toml").is_file()
+    assert (package_data.shipped_folder("models") / "roads" / "main-2.toml").is_file()
     package = tmp_path / "site-packages" / "roadproof"
     (package / "models").mkdir(parents=True)
     monkeypatch.setattr(package_data, "__file__", str(package / "runtime" / "package_data.py"))
-    assert package_data.shipped("models") == package / "models"
+    assert package_data.shipped_folder("models") == package / "models"
     with pytest.raises(FileNotFoundError, match="without its folder 'proofs'"):
-        package_data.shipped("proofs")
+        package_data.shipped_folder("proofs")

@@ -15,7 +15,7 @@ import pytest
 
 from roadproof.errors import InputError
 from roadproof.frontends.cli.main import main
-from roadproof.runtime.files import whole_file, write_whole
+from roadproof.runtime.files import atomic_file, write_atomic
 
 
 def test_a_pipe_is_written_to(tmp_path: Path) -> None:
@@ -24,7 +24,7 @@ def test_a_pipe_is_written_to(tmp_path: Path) -> None:
     heard: list[bytes] = []
     reader = threading.Thread(target=lambda: heard.append(pipe.read_bytes()))
     reader.start()
-    write_whole(pipe, b"told")
+    write_atomic(pipe, b"told")
     reader.join(30)
     assert heard == [b"told"]
     assert stat.S_ISFIFO(pipe.stat().st_mode)
@@ -34,7 +34,7 @@ def test_a_link_is_followed(tmp_path: Path) -> None:
     real, link = tmp_path / "real", tmp_path / "link"
     real.write_bytes(b"old")
     link.symlink_to(real)
-    write_whole(link, b"new")
+    write_atomic(link, b"new")
     assert link.is_symlink()
     assert real.read_bytes() == b"new"
 
@@ -44,7 +44,7 @@ def test_half_a_file_is_none(tmp_path: Path) -> None:
     path.write_bytes(b"old")
 
     def write_half() -> None:
-        with whole_file(path) as file:
+        with atomic_file(path) as file:
             file.write(b"half")
             raise KeyboardInterrupt
 
@@ -56,7 +56,7 @@ def test_half_a_file_is_none(tmp_path: Path) -> None:
 
 def test_a_folder_is_no_file(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="Is a directory"):
-        write_whole(tmp_path, b"x")
+        write_atomic(tmp_path, b"x")
 
 
 def test_a_link_to_a_pipe_is_followed(tmp_path: Path) -> None:
@@ -64,7 +64,7 @@ def test_a_link_to_a_pipe_is_followed(tmp_path: Path) -> None:
     os.mkfifo(pipe)
     link.symlink_to(pipe)
     reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
-    write_whole(link, b"told")
+    write_atomic(link, b"told")
     assert os.read(reader, 100) == b"told"
     os.close(reader)
     assert link.is_symlink()

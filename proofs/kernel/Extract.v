@@ -1,7 +1,8 @@
 (* The checkers as a program of OCaml.  TRUSTED, by those who use that program: read this file.
 
    Compiled in a folder, it writes checker.ml there, which is that of proofs/kernel/ocaml (a test compares them;
-   `make extract` writes it again).  Only truth values, lists, pairs, options and characters become those of OCaml; numbers stay Coq's own.
+   `make generated` writes it again).  Only truth values, lists, pairs, options and characters become those of OCaml;
+   numbers stay Coq's own.
    `accepted_at`, `settled`, `known` and `shown` say that `accepts_proof`, `settles_fact`, `is_known_fact` and
    `accepts_drive` are right; `holds_of_motions` and `holds_by_induction`, that `adds_instances` is; `no_solution`,
    that `refutes_program` is. *)

@@ -1,4 +1,4 @@
-"""Whose fault it is: every error the user can cause, with its exit code.
+"""Every error that a user can cause, with its exit code.
 
 A message says what was asked, ``name=value``, the rule, and what to do instead.
 Anything that is not a ``RoadproofError`` is our own fault and exits with 70.
@@ -37,14 +37,14 @@ class MissingSolverError(RoadproofError):
     exit_code = 4
 
 
-class LostError(RoadproofError):
+class LostWorkError(RoadproofError):
     """A part of the work ended its process each time it was tried, so that its answer is not known."""
 
     exit_code = 20
 
 
 class SharedError(RoadproofError):
-    """No error but word that this run has its share done, and that the whole is not there yet."""
+    """A message, no mistake: this run has its share done, and other shares are missing."""
 
     exit_code = 0
 
@@ -94,7 +94,7 @@ MOST_SHOWN = 50
 
 
 class TextErrors(TextError):
-    """Several mistakes in texts of ours, in ``errors``; the first of them is what a reader of one sees."""
+    """The mistakes in texts of a user, in ``errors``; a reader of one error sees the first."""
 
     def __init__(self, errors: Sequence[TextError]) -> None:
         first = errors[0]

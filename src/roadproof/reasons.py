@@ -1,9 +1,9 @@
-"""Why an answer is in doubt, or evidence is not accepted: every kind of reason with its words.
+"""The reasons for an UNKNOWN, or for evidence that is not accepted: every kind with its words.
 
->>> Why.WORK(60.0)
+>>> ReasonKind.WORK(60.0)
 'no answer within 60 units of work'
->>> Why.WORK(60.0).kind
-<Why.WORK: 'no answer within {:g} units of work'>
+>>> ReasonKind.WORK(60.0).kind
+<ReasonKind.WORK: 'no answer within {:g} units of work'>
 """
 
 from collections.abc import Iterable
@@ -18,10 +18,10 @@ class Reason(str):
     ``values``: what the words of the kind are filled in with.
     """
 
-    kind: "Why"
+    kind: "ReasonKind"
     values: tuple[object, ...]
 
-    def __new__(cls, kind: "Why", *values: object) -> "Reason":
+    def __new__(cls, kind: "ReasonKind", *values: object) -> "Reason":
         made = super().__new__(cls, kind.value.format(*values))
         made.kind, made.values = kind, values
         return made
@@ -31,12 +31,12 @@ class Reason(str):
 
     @property
     def is_late(self) -> bool:
-        """Whether the clock or the end of a process left no answer, which says nothing of the question."""
-        return self.kind in (Why.CLOCK, Why.PROCESS, Why.WORKERS)
+        """Return whether the clock or the end of a process left no answer; this says nothing of the claim."""
+        return self.kind in (ReasonKind.CLOCK, ReasonKind.PROCESS, ReasonKind.WORKERS)
 
 
 @unique
-class Why(StrEnum):
+class ReasonKind(StrEnum):
     """The kinds of reasons. Called with what its words leave open, a kind gives a reason."""
 
     NONE = ""
@@ -104,8 +104,8 @@ class Why(StrEnum):
     WITH_QUESTION = "it is checked with the question of its folder"
     NONE_AHEAD = "no drive was found, {} s ahead"
     ON_ROAD = "{} (road {}, {:g} units of work)"
-    NO_SEARCH = "no search on {}: {}"
-    NOT_ON = "{} on {}"
+    NO_SEARCH = "no search: {}"
+    NOT_ON = "on {}: {}"
     WORK_EACH = "{}; {:g} units of work each, {} s of driving"
     NOT_LOOKED_THROUGH = "some of the simple drives were not looked through: {}"
     NO_COMMON_STEP = "durations have no common step of {:g} s or more; no drive of coarser ones does"
@@ -234,10 +234,10 @@ class Why(StrEnum):
         return Reason(self, *values)
 
 
-NO_REASON: Final = Why.NONE()
+NO_REASON: Final = ReasonKind.NONE()
 
 
 def joined(reasons: Iterable[Reason]) -> Reason:
-    """Several reasons as one, without those that are empty."""
-    told = [x for x in reasons if x]
-    return reduce(Why.AND, told) if told else NO_REASON
+    """Return reasons as one reason, without empty ones."""
+    parts = [x for x in reasons if x]
+    return reduce(ReasonKind.AND, parts) if parts else NO_REASON

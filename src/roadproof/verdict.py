@@ -1,4 +1,4 @@
-"""What an answer promises, and the exit code that goes with it (docs/explanation/meaning.md)."""
+"""Verdicts, and the exit code that belongs to each (docs/explanation/meaning.md)."""
 
 from collections.abc import Iterable
 from enum import IntEnum, StrEnum
@@ -45,8 +45,8 @@ DriveVerdict: TypeAlias = Literal[Verdict.WITNESSED, Verdict.IMPOSSIBLE, Verdict
 
 def claim_verdict(word: str) -> ClaimVerdict:
     """The answer to a claim that has a name, such as PROVED. Raises ``KeyError``."""
-    found: dict[str, ClaimVerdict] = {str(x): x for x in get_args(ClaimVerdict)}
-    return found[word]
+    verdicts: dict[str, ClaimVerdict] = {str(x): x for x in get_args(ClaimVerdict)}
+    return verdicts[word]
 
 
 class ExitCode(IntEnum):
@@ -72,12 +72,12 @@ def exit_code(outcomes: Iterable[tuple[Verdict, Verdict]]) -> ExitCode:
     worst = ExitCode.AS_EXPECTED
     for verdict, expected in outcomes:
         if verdict is Verdict.CROSSCHECK_FAILED:
-            found = ExitCode.CROSSCHECK_FAILED
+            code = ExitCode.CROSSCHECK_FAILED
         elif verdict is Verdict.UNKNOWN:
-            found = ExitCode.UNKNOWN
+            code = ExitCode.UNKNOWN
         elif verdict is not expected:
-            found = ExitCode.UNEXPECTED
+            code = ExitCode.UNEXPECTED
         else:
-            found = ExitCode.AS_EXPECTED
-        worst = max(worst, found)
+            code = ExitCode.AS_EXPECTED
+        worst = max(worst, code)
     return worst

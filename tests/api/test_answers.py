@@ -12,17 +12,29 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from api.doors import ASKED, FALSE, MINE, SYMMETRIC, Asked, tell, without_clock, without_seconds
-from roadproof.engines.solve.smt import ask
+from api.both_interfaces import (
+    ASKED,
+    FALSE,
+    MINE,
+    SYMMETRIC,
+    InterfaceCase,
+    tell,
+    without_clock,
+    without_seconds,
+)
+from rejection import rejection_reason
+from roadproof.engines.solve.smt import check_sat
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.answer import Answer as ClaimAnswer
-from roadproof.evidence.certificate import Certificate, read_certificate, refusal, to_json
+from roadproof.evidence.answer import ClaimAnswer
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.certificate_file import read_certificate, to_json
 from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.frontends.api.answer import Answer
-from roadproof.frontends.api.proofs import claims_of
+from roadproof.frontends.api.answer import BaseAnswer
+from roadproof.frontends.api.proofs import claims_question
 from roadproof.frontends.cli.main import main
 from roadproof.library.loading import bundled_library
+from roadproof.questions import decide
 from roadproof.verdict import Verdict
 
 pytestmark = pytest.mark.usefixtures("searched_once")
@@ -51,8 +63,8 @@ class Both:
     """An answer, and the command line's: exit code, text, and JSON."""
 
     name: str
-    asked: Asked
-    answer: Answer
+    asked: InterfaceCase
+    answer: BaseAnswer
     code: int
     text: str
     json: str
@@ -194,7 +206,16 @@ def test_what_rests_on_definitions_of_ones_own_is_accepted(tmp_path: Path) -> No
 def test_progress_is_told() -> None:
     told: list[tuple[int, int, str]] = []
     rp.prove("P4", jobs=2, progress=lambda *x: told.append(x))
-    assert told == [(k, 3, "claims") for k in range(4)]
+    asked = [x for x in told if x[2] != "claims looked up"]  # these are told where they take long
+    assert asked == [(k, 3, "claims") for k in range(4)]
+
+
+def test_look_ups_that_take_long_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(decide, "SOON", 0.0)
+    told: list[tuple[int, int, str]] = []
+    rp.overlap("3,4,5", jobs=1, progress=lambda *x: told.append(x))
+    assert told[0] == (0, 3, "groups of pairs looked up")
+    assert (2, 3, "groups of pairs looked up") in told
 
 
 def test_kept_answers_are_taken_up(tmp_path: Path) -> None:
@@ -222,7 +243,7 @@ def test_a_planted_certificate_is_noticed() -> None:
     [answered] = proved.answers
     certificate = answered.certificate
     assert certificate is not None
-    question = claims_of(rp.load(), [FALSE], None)
+    question = claims_question(rp.load(), [FALSE], None)
     [(name, claim)] = question.claims.items()
     lie = ClaimAnswer(claim, replace(certificate, claim=FALSE))
     planted = replace(proved.found, answers={name: lie})
@@ -317,7 +338,9 @@ def test_refuted_at_values_by_a_drive_or_a_trace_with_these_values(tmp_path):
 
 
 def forged(certificate, **changes):
-    return refusal(replace(certificate, **changes), bundled_library(), lambda script: ask(script))
+    return rejection_reason(
+        replace(certificate, **changes), bundled_library(), lambda script: check_sat(script)
+    )
 
 
 def test_other_values_than_those_that_were_proved_are_refused(tmp_path):
@@ -327,12 +350,12 @@ def test_other_values_than_those_that_were_proved_are_refused(tmp_path):
         (tmp_path / "x.json").write_text(to_json(made), "utf-8")
         assert read_certificate(tmp_path / "x.json") == made
         assert forged(made) is None
-    others = replace(plain.assumed, said=("minDanger = 0.5 s",))
+    others = replace(plain.assumed, texts=("minDanger = 0.5 s",))
     assert "the query cannot be derived" in forged(plain, assumed=others)
-    assert forged(plain, assumed=replace(plain.assumed, said=()))
-    assert "written otherwise" in forged(plain, assumed=replace(plain.assumed, said=("minDanger = 600 ms",)))
+    assert forged(plain, assumed=replace(plain.assumed, texts=()))
+    assert "written otherwise" in forged(plain, assumed=replace(plain.assumed, texts=("minDanger = 600 ms",)))
     assert "written otherwise" in forged(
-        plain, assumed=replace(plain.assumed, said=(*plain.assumed.said, "thwLimit = 2 s"))
+        plain, assumed=replace(plain.assumed, texts=(*plain.assumed.texts, "thwLimit = 2 s"))
     )
     assert forged(pinned, pinned=())
     assert "no premise of the claim" in forged(pinned, pinned=(*pinned.pinned, "rho = 1 s"))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import roadproof as rp
-from api.doors import tell
+from api.both_interfaces import tell
 from roadproof.errors import InputError, Position
 from roadproof.extensions.pages.studio.drafting import Draft, Mistake, mistakes, place_in, sources_of
 from roadproof.logic.formula import Application

@@ -13,10 +13,10 @@ import polars as pl
 import pytest
 
 import roadproof as rp
-from extensions.exchange.exporting.kept import kept, subject
-from extensions.exchange.exporting.kept import motion as motion_from
+from extensions.exchange.exporting.shipped_drives import motion as motion_from
+from extensions.exchange.exporting.shipped_drives import shipped_drives, subject
 from planting import plant
-from roadproof.engines.prove.motion import prove_of_motions
+from roadproof.engines.prove.motion import prove_for_motions
 from roadproof.engines.search import minimal
 from roadproof.engines.search.minimal import simplest
 from roadproof.errors import InputError
@@ -27,7 +27,7 @@ from roadproof.extensions.exchange.export.registry import FORMATS
 from roadproof.extensions.kernel.derivation import rational
 from roadproof.extensions.kernel.derivations.prepare import prepare
 from roadproof.extensions.pages.studio.dropping import drop
-from roadproof.extensions.pages.studio.requests import read_ask
+from roadproof.extensions.pages.studio.requests import read_question
 from roadproof.extensions.pages.viewer_data import viewer_data
 from roadproof.extensions.traffic.evaluate.one_trace import sample_drive
 from roadproof.frontends.api.driving import drive, motion
@@ -164,7 +164,7 @@ def test_what_looks_for_drives_among_files_finds_it(tmp_path: Path) -> None:
     assert (made.results, made.drives) == (1, 1)
     files = [{"name": "smooth.json", "content": path.read_text("utf-8")}]
     draft = {"base": "ext", "text": "", "before": None, "options": {}, "params": {}}
-    dropped = drop(read_ask({"files": files, "draft": draft, "set": "ext"}))
+    dropped = drop(read_question({"files": files, "draft": draft, "set": "ext"}))
     assert dropped["drive"]["schema"] == "roadproof/drive/2"
     assert dropped["view"]["formulas"][0]["holds"] is True
     [finding] = rp.check(path, kernel="coq").findings if shutil.which("coqc") else [None]
@@ -222,7 +222,7 @@ def test_acceleration_is_not_the_integral_of_jerk(monkeypatch: pytest.MonkeyPatc
     with monkeypatch.context() as patch:  # planted: it would be proved
         patch.setattr(schemas, "RATES", {**schemas.RATES, "a_lon": "j_lon"})
         query = read_claim(LIBRARY.select("base"), claim)
-        found = prove_of_motions(LIBRARY.select("base"), query, ("motion",), Effort(5))
+        found = prove_for_motions(LIBRARY.select("base"), query, ("motion",), Effort(5))
         assert found.verdict is Verdict.PROVED
     assert rp.prove("j_lon(SV) > 2 m/s^3 -> not j_lon(SV) <= 1 m/s^3", jobs=1).verdict is Verdict.PROVED
 
@@ -281,7 +281,7 @@ def drives(tmp_path: Path) -> Path:
     """Two drive files, and beside them evidence of another kind."""
     folder = tmp_path / "drives"
     for name in ("scenario-04-base", "scenario-12-ext"):
-        write_json(folder / f"{name}.json", drive_data(kept()[name], {}))
+        write_json(folder / f"{name}.json", drive_data(shipped_drives()[name], {}))
     write_json(folder / "index.json", {"schema": "roadproof/index/1"})
     return folder
 
@@ -301,7 +301,7 @@ def test_a_folder_of_drives_in_every_format(drives: Path, tmp_path: Path) -> Non
 
 
 def test_values_paths_and_files_are_the_same(drives: Path, tmp_path: Path) -> None:
-    file = kept()["scenario-04-base"]
+    file = shipped_drives()["scenario-04-base"]
     given = (drives / "scenario-04-base.json", file, JudgedDrive(file, bundled_library()))
     each = [rp.export(x, "openscenario", tmp_path / f"{k}") for k, x in enumerate(given)]
     found = [contents(x.folder) for x in each]
@@ -310,19 +310,19 @@ def test_values_paths_and_files_are_the_same(drives: Path, tmp_path: Path) -> No
 
 
 def test_values_of_one_name_are_counted(tmp_path: Path) -> None:
-    file = kept()["scenario-04-base"]
+    file = shipped_drives()["scenario-04-base"]
     made = rp.export([file, file], "csv", tmp_path / "out")
     assert [x.name for x in made.drives] == ["scenario-04-base", "scenario-04-base-2"]
 
 
 def test_more_samples(tmp_path: Path) -> None:
-    made = rp.export(kept()["scenario-04-base"], "csv", tmp_path / "out", rate=50)
+    made = rp.export(shipped_drives()["scenario-04-base"], "csv", tmp_path / "out", rate=50)
     lines = made.files[0].read_text().splitlines()
     assert (len(lines), lines[3][:8]) == (1 + 2 * 301, "0.02,SV,")
 
 
 def spoiled(**changes: object) -> DriveFile:
-    return replace(kept()["scenario-04-base"], **changes)  # type: ignore[arg-type]
+    return replace(shipped_drives()["scenario-04-base"], **changes)  # type: ignore[arg-type]
 
 
 NAMED = Drive(
@@ -383,7 +383,7 @@ def test_nothing_is_written_where_one_of_several_is_refused(tmp_path: Path) -> N
     turns = Drive({"SV": motion_from((None, "-10", "0"))})
     back = replace(subject().file, drive=turns, formula="true")
     with pytest.raises(rp.InputError, match="v_lon=-"):
-        rp.export([kept()["scenario-04-base"], back], ["csv", "openscenario"], tmp_path / "out")
+        rp.export([shipped_drives()["scenario-04-base"], back], ["csv", "openscenario"], tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 

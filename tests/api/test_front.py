@@ -13,16 +13,16 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof import _HOMES
+from roadproof.core_record import EXTENSION
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.extensions.catalogue.writing import _free
 from roadproof.extensions.kernel import coq
 from roadproof.extensions.kernel.asking import KernelQuestion, write
-from roadproof.extensions.traffic.evaluate.on_trace import drivers_of
+from roadproof.extensions.traffic.evaluate.on_trace import driver_models_of
 from roadproof.frontends.cli.main import main
-from roadproof.questions import settle
+from roadproof.questions import decide
 from tables import read_table
 
 HEAVY = tuple(read_table(__file__, "heavy"))
@@ -93,7 +93,9 @@ def test_version() -> None:
     assert python("-m", "roadproof", "--version") == f"roadproof {rp.__version__}"
 
 
-@pytest.mark.parametrize("name", ["roadproof", *(f"roadproof.{x}" for x in dict.fromkeys(_HOMES.values()))])
+@pytest.mark.parametrize(
+    "name", ["roadproof", *sorted({f"roadproof.{x.partition(':')[0]}" for x in EXTENSION.functions.values()})]
+)
 def test_what_docstrings_show_is_so(name: str) -> None:
     assert doctest.testmod(import_module(name)).failed == 0
 
@@ -135,9 +137,9 @@ def test_drivers_are_refused_where_aeb_brakes_less_than_the_driver() -> None:
         home = rp.load(specs=["driver"], options={"cc_aeb": "max"}, params={"aeb_braking": braking})
         if refused:
             with pytest.raises(UsageError, match="AEB brakes at least as hard as the driver"):
-                drivers_of(home, names)
+                driver_models_of(home, names)
         else:
-            assert drivers_of(home, names) is not None
+            assert driver_models_of(home, names) is not None
 
 
 def test_what_cannot_be_put_to_coq_has_a_reason_and_no_file(tmp_path: Path) -> None:
@@ -169,10 +171,10 @@ def test_the_version_of_coq(
     program.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
     if not told:
-        assert coq.find() == (str(program), said)
+        assert coq.find_coqc() == (str(program), said)
     else:
         with pytest.raises(MissingSolverError, match=told):
-            coq.find()
+            coq.find_coqc()
 
 
 def test_rows_of_an_extreme_number_its_values_from_one() -> None:
@@ -264,35 +266,35 @@ def is_forward(claim):
 
 
 def test_the_first_answer_is_told_while_the_other_is_still_looked_for(monkeypatch):
-    plain, told = Engines.settle, multiprocessing.get_context("fork").Event()
+    plain, told = Engines.answer_claim, multiprocessing.get_context("fork").Event()
 
     def wait(engines, claim, *more):
         if is_forward(claim):
             assert told.wait(300)
         return plain(engines, claim, *more)
 
-    monkeypatch.setattr(Engines, "settle", wait)
-    monkeypatch.setattr(settle, "is_fork_unsafe", lambda: False)
+    monkeypatch.setattr(Engines, "answer_claim", wait)
+    monkeypatch.setattr(decide, "is_fork_unsafe", lambda: False)
     came: list[str] = []
     rp.compare(BEFORE, AFTER, jobs=2, fresh=True, each=lambda name, _: (came.append(name), told.set()))
     assert came == ["second implies first", "first implies second"]
 
 
 def test_a_direction_that_is_lost_or_late_leaves_the_other(monkeypatch):
-    plain = Engines.settle
+    plain = Engines.answer_claim
 
     def die(engines, claim, *more):
         if is_forward(claim):
             os._exit(7)
         return plain(engines, claim, *more)
 
-    monkeypatch.setattr(Engines, "settle", die)
-    monkeypatch.setattr(settle, "is_fork_unsafe", lambda: False)
+    monkeypatch.setattr(Engines, "answer_claim", die)
+    monkeypatch.setattr(decide, "is_fork_unsafe", lambda: False)
     answer = rp.compare(BEFORE, AFTER, jobs=2, fresh=True)
     forward, backward = answer.view.directions.values()
     assert (str(forward.verdict), str(backward.verdict)) == ("UNKNOWN", "PROVED")
     assert "its process ended each time" in forward.reason
-    monkeypatch.setattr(Engines, "settle", plain)
+    monkeypatch.setattr(Engines, "answer_claim", plain)
     late = rp.compare(BEFORE, AFTER, jobs=1, timeout=1e-6, fresh=True)
     assert {x.verdict for x in late.view.directions.values()} == {rp.Verdict.UNKNOWN}
     assert all("cut off by the clock" in x.reason for x in late.view.directions.values())

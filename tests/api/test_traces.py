@@ -12,11 +12,11 @@ import polars
 import pytest
 
 import roadproof as rp
-from api.doors import tell
+from api.both_interfaces import tell
 from console import agree, sessions_of
 from pages import Example, examples_of, rewritten, run
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.extensions.traffic.answers.monitor import Override
+from roadproof.extensions.traffic.answers.monitor import OverrideData
 from roadproof.extensions.traffic.evaluating import Evaluation
 from roadproof.extensions.traffic.monitoring import MonitorAnswer
 from roadproof.extensions.traffic.simulating import Simulation
@@ -73,8 +73,8 @@ def test_a_sampled_drive(drive: JudgedDrive, here: Path) -> None:
 def test_what_is_overruled_is_told(drive: JudgedDrive, here: Path) -> None:
     line = ["monitor", "4", str(here / "scenario-04-base.json"), "--set", "ext", "--param", "rho=1"]
     found = rp.monitor(4, drive, rp.load("ext", params={"rho": 1}))
-    assert Override(what="parameter rho", asked="1", said="3/5") in found.place.overruled
-    assert Override(what="set", asked="ext", said="base") in found.place.overruled
+    assert OverrideData(what="parameter rho", asked="1", said="3/5") in found.place.overruled
+    assert OverrideData(what="set", asked="ext", said="base") in found.place.overruled
     text = tell(line)[1].strip().replace(str(here / "scenario-04-base.json"), "drive")
     assert str(found) == text
 

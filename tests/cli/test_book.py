@@ -16,19 +16,20 @@ EXAMPLES = sorted(x for x in ROOT.glob("examples/*/README.md") if x.parent.name 
 TUTORIALS = ("first-scenario", "catalogue", "recordings", "careful-driver")
 GUIDES = (
     *("interop", "requirements", "signals", "rss", "roads", "solvers", "terminal", "recordings"),
-    *("certificates", "c", "assurance"),
+    *("certificates", "c", "assurance", "maps", "surveys"),
 )
 PAGES = [
     *sorted(Path(__file__).parent.joinpath("book").glob("*.md")),
     *sorted(ROOT.joinpath("tests/attacks").glob("*.md")),
     *EXAMPLES,
     ROOT / "README.md",
-    ROOT / "docs/index.md",
+    *(ROOT / "docs" / f"{name}.md" for name in ("index", "testers", "safety-cases", "researchers")),
     *(ROOT / "docs/tutorials" / f"{name}.md" for name in TUTORIALS),
     ROOT / "docs/reference/language.md",
     *(ROOT / "docs/how-to" / f"{name}.md" for name in GUIDES),
     ROOT / "docs/explanation/motion.md",
     ROOT / "docs/explanation/entering.md",
+    ROOT / "docs/explanation/encoding.md",
 ]
 
 

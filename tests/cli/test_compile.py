@@ -99,3 +99,18 @@ def test_refused(formula: str, options: dict[str, object], told: str) -> None:
     with pytest.raises(rp.RoadproofError) as refused:
         rp.compile(formula, **options)  # type: ignore[arg-type]
     assert told in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("to", "option"),
+    [
+        *(("c", x) for x in ("--horizon 3", "--reach 50", "--vehicle truck", "--allow-collisions")),
+        *(("c", "--drives outer"), ("mps", "--memory 9"), ("smt2", "--name watch"), ("lp", "--name watch")),
+    ],
+)
+def test_an_option_of_another_target_is_refused(
+    to: str, option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["compile", "4", "--to", to, *option.split(), "--out", str(tmp_path / "out")]) == 2
+    assert f"to={to} has no such option; it is one of to=" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

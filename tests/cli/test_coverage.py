@@ -10,17 +10,19 @@ from typing import Any
 import pytest
 
 from planting import plant
+from roadproof.core_record import DRIVE
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import UsageError
-from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.answer import ClaimAnswer, undecided
 from roadproof.evidence.claim import Claim
-from roadproof.evidence.drive_file import SCHEMA, load_drive
+from roadproof.evidence.drive_file import load_drive
+from roadproof.extensions.assurance.folder_view import folder_data
 from roadproof.extensions.surveys import covering
 from roadproof.extensions.surveys.coverage import answers as occurring
 from roadproof.extensions.surveys.coverage import claims as coverage_claims
 from roadproof.extensions.surveys.coverage import question as coverage_question
 from roadproof.extensions.surveys.coverage.classes import GapClasses, GapGroup
-from roadproof.extensions.surveys.coverage.found import FoundGap, SimpleDrives
+from roadproof.extensions.surveys.coverage.gap_drives import GapDrive, SimpleDrives
 from roadproof.extensions.surveys.coverage.question import CoverageQuestion, gaps_of
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim
@@ -28,11 +30,10 @@ from roadproof.library.loading import bundled_library
 from roadproof.library.specification import Query, Specification
 from roadproof.questions.basis import Basis
 from roadproof.questions.checking import read_folder
-from roadproof.questions.question import walk
-from roadproof.questions.settle import settle
+from roadproof.questions.decide import decide_claims
+from roadproof.questions.question import walk_batch
 from roadproof.questions.store import Store
-from roadproof.questions.views import folder_data
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.verdict import ExitCode, Verdict
 from roadproof.world.models import load_road
 from tables import read_table
@@ -61,7 +62,7 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
 def only_some(monkeypatch: pytest.MonkeyPatch) -> None:
     best = SimpleDrives.best
 
-    def some_drives(self: SimpleDrives, start: int, step: int) -> dict[int, FoundGap]:
+    def some_drives(self: SimpleDrives, start: int, step: int) -> dict[int, GapDrive]:
         return best(self, 0, 7 * 14) if start == 0 and self.road.name == "main-2" else {}
 
     monkeypatch.setattr(GapClasses, "groups", components(*WANTED))
@@ -97,7 +98,7 @@ def test_evidence_in_files_and_going_on(
     assert len(list(out.glob("gap-*.png"))) == len(data["gaps"])
     assert main(["check", str(out), "--jobs", "1"]) == 0
     kept = {path.name: path.read_bytes() for path in out.glob("*.json")}
-    monkeypatch.setattr(Engines, "settle", lambda *_: pytest.fail("asked again"))
+    monkeypatch.setattr(Engines, "answer_claim", lambda *_: pytest.fail("asked again"))
     assert run(out, "--road", "main-2", "--no-pictures") == ExitCode.UNEXPECTED
     assert {path.name: path.read_bytes() for path in out.glob("*.json")} == kept
     assert view_of(out) == data
@@ -187,33 +188,35 @@ def test_what_is_kept_comes_back_as_it_was(few: None, tmp_path: Path) -> None:
 
 def test_claims_and_needs_are_kept_too(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A run that was broken off leaves nothing that ``check`` has to reject."""
-    monkeypatch.setattr(coverage_question, "replaced_by", lambda _: ("cutIn",))
+    monkeypatch.setattr(coverage_question, "own_definitions", lambda _: ("cutIn",))
     coverage = asked("complete", needed=True)
-    told = settle(coverage, tmp_path, 1).answers
+    told = decide_claims(coverage, tmp_path, 1).answers
     names = ["covered-1", "covered-2", "covered-3", "covered-4", "help-needed-cutIn", "needed-cutIn"]
     assert sorted(path.stem for path in tmp_path.glob("*.json")) == [*names, "question"]
     assert main(["check", str(tmp_path), "--jobs", "1"]) == 0
-    monkeypatch.setattr(Engines, "settle", lambda *_: pytest.fail("asked again"))
-    survey = coverage.view(settle(coverage, tmp_path, 1).answers).survey
+    monkeypatch.setattr(Engines, "answer_claim", lambda *_: pytest.fail("asked again"))
+    survey = coverage.view(decide_claims(coverage, tmp_path, 1).answers).survey
     assert survey.verdict is Verdict.COVERED
     [need] = survey.needs
     assert need.drive is not None
     assert need.drive.file == told["needed-cutIn"].evidence.file  # type: ignore[union-attr]
 
 
-def lost(question: CoverageQuestion, sent: Callable[[str, Claim], Answer | None]) -> dict[str, Answer]:
+def lost(
+    question: CoverageQuestion, sent: Callable[[str, Claim], ClaimAnswer | None]
+) -> dict[str, ClaimAnswer]:
     """The answers to all claims: what ``sent`` gives, else a doubt since the process of each ended."""
-    known: dict[str, Answer] = {}
+    known: dict[str, ClaimAnswer] = {}
 
-    def find(name: str, claim: Claim) -> Answer:
-        made = sent(name, claim) or undecided(claim, Why.PROCESS("SIGKILL"))
+    def find(name: str, claim: Claim) -> ClaimAnswer:
+        made = sent(name, claim) or undecided(claim, ReasonKind.PROCESS("SIGKILL"))
         return known.setdefault(name, made)
 
     seen: set[str] = set()
     while new := [x for x in question.batches(known) if x.name not in seen]:
         seen |= {x.name for x in new}
         for batch in new:
-            [*walk(batch, find)]
+            [*walk_batch(batch, find)]
     return known
 
 
@@ -227,12 +230,12 @@ def test_what_is_lost_is_in_doubt(few: None) -> None:
     assert {x.verdict for x in (*survey.claims, *survey.classes)} == {Verdict.UNKNOWN}
     assert all("SIGKILL" in x.reason for x in (*survey.claims, *survey.classes))
     assert all("some of the simple drives were not looked through" in x.reason for x in survey.classes)
-    assert [name for name, _ in question.doubts(known)] == [f"class {name}" for name in WANTED]
+    assert [name for name, _ in question.unknowns(known)] == [f"class {name}" for name in WANTED]
     needing = asked("complete", needed=True)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(CoverageQuestion, "is_covered", lambda *_: True)
         patch.setattr(coverage_question, "is_covered", lambda *_: True)
-        patch.setattr(coverage_question, "replaced_by", lambda _: ("cutIn",))
+        patch.setattr(coverage_question, "own_definitions", lambda _: ("cutIn",))
         [need] = needing.view(lost(needing, lambda *_: None)).survey.needs
     assert need.verdict is Verdict.UNKNOWN
 
@@ -297,7 +300,7 @@ def test_json_has_verdicts_and_drives(tmp_path, capsys):
         (3, "base", "WITNESSED"),
         (3, "ext", "WITNESSED"),
     ]
-    assert all(v["drives"][0]["schema"] == SCHEMA for v in data["verdicts"])
+    assert all(v["drives"][0]["schema"] == DRIVE for v in data["verdicts"])
     assert all(v["seconds"]["all"] > 0 and v["sizes"]["inequalities"] > 0 for v in data["verdicts"])
 
 

@@ -18,11 +18,11 @@ from roadproof.evidence.drive_file import load_drive
 from roadproof.extensions.traffic import monitoring as traces
 from roadproof.extensions.traffic.evaluate import results, totals
 from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording
-from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.evaluate.questions import compile_questions, default_settings
 from roadproof.extensions.traffic.formats.highd import read_highd
 from roadproof.extensions.traffic.formats.write_highd import write_highd
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.samples import csv_of
 
@@ -34,7 +34,7 @@ TABLES = {f"{x}.{e}" for x in ("results", "comparison") for e in ("txt", "md", "
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("recordings")
     for number in (1, 2, 3):
-        write_highd(simulate(Traffic(seconds=20, lane_width=3.5), seed=6, number=number), path)
+        write_highd(simulate(TrafficSettings(seconds=20, lane_width=3.5), seed=6, number=number), path)
     return path
 
 
@@ -392,14 +392,14 @@ def test_pictures(drive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str
 @pytest.fixture(scope="module")
 def recordings(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("recordings")
-    write_highd(simulate(Traffic(seconds=30, lane_width=3.5), seed=6), path)
+    write_highd(simulate(TrafficSettings(seconds=30, lane_width=3.5), seed=6), path)
     return path
 
 
 def test_a_pair_is_answered_as_in_an_evaluation(recordings: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Every match of base and ext, one by one; and the other scenarios are not true there."""
     settings = default_settings()
-    found = evaluate_recording(read_highd(recordings, "01"), ask(settings, 25))
+    found = evaluate_recording(read_highd(recordings, "01"), compile_questions(settings, 25))
     matches = [m for m in found.matches if m.set_name in ("base", "ext") and m.min_danger == 0][:10]
     assert len(matches) > 3
     for match in matches:
@@ -552,8 +552,8 @@ def test_a_file_that_overrules_the_command_line_is_caught(
     drive.write_text(json.dumps(data))
     command = ["rho >= 1 s and v_lon(SV) > 0 m/s", str(drive), "--param", "rho=1"]
     with monkeypatch.context() as patch:
-        honest = "{**file.values, **home.values}"
-        plant_fault(patch, traces, honest, "{**home.values, **file.values}")
+        honest = "{**file.values, **definitions.values}"
+        plant_fault(patch, traces, honest, "{**definitions.values, **file.values}")
         assert asked(command, capsys)[0] == 10
     assert asked(command, capsys)[0] == 0
 

@@ -18,13 +18,13 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.engines.search import ask
 from roadproof.errors import RoadproofError
+from roadproof.extensions.catalogue import completing
 from roadproof.extensions.pages.studio.server import serve
 from roadproof.frontends.cli.help import command_parser
 from roadproof.frontends.cli.main import COMMANDS, answer
 from roadproof.runtime import pool
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.package_data import shipped_folder
 from roadproof.verdict import ExitCode
 from tables import read_table
 
@@ -79,7 +79,7 @@ def make_files(folder: Path) -> tuple[str, ...]:
         (folder / name).write_bytes(content)
     (folder / "inside").mkdir()
     good = folder / "good.json"
-    good.write_bytes((shipped("proofs") / "C1-base.json").read_bytes())
+    good.write_bytes((shipped_folder("proofs") / "C1-base.json").read_bytes())
     paths = [str(folder / name) for name in contents] + [str(folder / "inside"), str(folder), str(good)]
     return (*paths, "nowhere", "nowhere/file.json", str(folder / "01_tracks.csv:1,2"), "-", "")
 
@@ -147,7 +147,7 @@ def replace_everywhere(monkeypatch: pytest.MonkeyPatch, function: object, other:
 def test_no_command_line_is_our_fault(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROADPROOF_TRACEBACK", "1")
     replace_everywhere(monkeypatch, pool.work, begin)
-    replace_everywhere(monkeypatch, ask.answer, begin_at_once)
+    replace_everywhere(monkeypatch, completing.search_drive_or_unknown, begin_at_once)
     replace_everywhere(monkeypatch, serve, begin_at_once)
     files = make_files(tmp_path)
     monkeypatch.chdir(tmp_path / "inside")

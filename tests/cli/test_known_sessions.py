@@ -79,7 +79,7 @@ def test_known_answers_say_the_same(
         (tmp_path / name).write_text(text, "utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    archives.archived.cache_clear()
+    archives.shipped_answers.cache_clear()
     said = []
     for switch in ("off", "on", "on"):
         monkeypatch.setenv(SWITCH, switch)
@@ -102,7 +102,8 @@ def test_a_wrong_known_answer_would_be_noticed(
     """The keys of answers leave out the claim, and what a file is about is not compared."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(Store, "key", lambda self, claim: "one key")
-    monkeypatch.setattr("roadproof.evidence.answer._require", lambda *_: None)
+    for reader in ("about_claim", "certificate", "refutation"):
+        monkeypatch.setattr(f"roadproof.evidence.readers.{reader}.require", lambda *_: None)
     claims = ("v_lon(SV) > 3 m/s -> v_lon(SV) > 2 m/s", "v_lon(SV) > 4 m/s -> v_lon(SV) < 3 m/s")
     monkeypatch.setenv(SWITCH, "off")
     without = [ask(f"prove '{x}' --no-drive", tmp_path, capsys) for x in claims]

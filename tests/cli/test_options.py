@@ -19,10 +19,11 @@ import pytest
 
 import roadproof
 import roadproof as rp
+from documents import keywords_file
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.claim import Engine, Objective
 from roadproof.extensions.traffic.answers.monitor import View
-from roadproof.extensions.traffic.settings import Evaluate, Monitor, Simulate
+from roadproof.extensions.traffic.settings import Evaluate, MonitorSettings, Simulate
 from roadproof.extensions.traffic.simulate.traffic import Ramp
 from roadproof.frontends.api.checking import Kernel, Solver
 from roadproof.frontends.cli import options, prove
@@ -32,10 +33,9 @@ from roadproof.frontends.cli.help import command_parser
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.cli.overview import COMMANDS, groups
 from roadproof.frontends.cli.overview import COMMANDS as SUB_COMMANDS
-from roadproof.frontends.settings import keywords_file
 from roadproof.frontends.settings.flags import add_flags, is_rare, read_keywords
-from roadproof.frontends.settings.groups import Definitions
-from roadproof.frontends.settings.option import Settings
+from roadproof.frontends.settings.groups import DefinitionsSettings
+from roadproof.frontends.settings.option import Settings, stem_of
 from roadproof.frontends.settings.questions import Check, Prove, Witness
 from roadproof.questions.prove import ProveQuestion
 from roadproof.semantics.sampled.answers import Convention
@@ -43,12 +43,12 @@ from roadproof.semantics.sampled.answers import Convention
 
 def parsed(*arguments: str) -> argparse.Namespace:
     parser = argparse.ArgumentParser()
-    add_flags(parser, Definitions)
+    add_flags(parser, DefinitionsSettings)
     return parser.parse_args(arguments)
 
 
 def values_given(*arguments: str) -> Mapping[str, Fraction]:
-    return read_definitions(parsed(*arguments), Definitions).values
+    return read_definitions(parsed(*arguments), DefinitionsSettings).values
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_specification_is_selected(tmp_path: Path) -> None:
     mine = tmp_path / "mine.spec"
     mine.write_text("set mine extends ext {}\ndef p(a: vehicle) := true", "utf-8")
     words = ("--spec", str(mine), "--set", "mine", "--option", "lateral_sign=literal")
-    chosen = read_definitions(parsed(*words), Definitions).specification
+    chosen = read_definitions(parsed(*words), DefinitionsSettings).specification
     assert chosen.set_name == "mine"
     assert chosen.options["lateral_sign"] == "literal"
     assert "p" in chosen.definitions
@@ -167,21 +167,15 @@ def test_prove_takes_scenarios_as_other_commands_do(words: list[str], scenarios:
 
 def asked_of_prove(words: list[str]) -> ProveQuestion:
     args = command_parser("prove").parse_args(words)
-    return prove._asked(args, Prove.of(read_keywords(args, Prove)))
+    return prove._question(args, Prove.of(read_keywords(args, Prove)))
 
 
 # --- Options are defined once: flags, keyword arguments and signatures follow the definitions -------
 
 
-def test_the_file_of_keyword_arguments_follows_the_definitions() -> None:
-    remake = "run: python -m roadproof.frontends.settings.keywords_file"
-    for file, homes in keywords_file.modules().items():
-        assert file.read_text("utf-8") == keywords_file.text(homes), remake
-
-
 @pytest.mark.parametrize("question", keywords_file.all_questions(), ids=lambda x: x.__name__)
 def test_a_function_shows_its_options(question: type) -> None:
-    parameters = inspect.signature(getattr(rp, question.__name__.lower())).parameters
+    parameters = inspect.signature(getattr(rp, stem_of(question).lower())).parameters
     shown = {name: x for name, x in parameters.items() if x.kind is x.KEYWORD_ONLY}
     for name, option in question.options().items():
         assert (name in shown) == option.keyword
@@ -218,8 +212,8 @@ def test_an_unknown_keyword_is_a_type_error() -> None:
     [
         (Witness, "engine", Engine),
         (Witness, "objective", Objective),
-        (Monitor, "view", View),
-        (Monitor, "end", Convention),
+        (MonitorSettings, "view", View),
+        (MonitorSettings, "end", Convention),
         (Evaluate, "end", Convention),
         (Simulate, "ramp", Ramp),
         (Check, "solver", Solver),
@@ -313,16 +307,17 @@ SOURCE = Path(roadproof.__file__).parent
 READERS = {
     "roadproof.frontends.cli.options": {"--all", "--cluster", "--jobs", "--json", "--shard"},
     "roadproof.runtime.executors": {"--jobs"},
-    "roadproof.questions.settle": {"--out", "--shard"},
-    "roadproof.questions.store": {"--out"},
+    "roadproof.questions.decide": {"--out", "--shard"},
+    "roadproof.questions.folder": {"--out"},
     "roadproof.evidence.specifications": {"--spec"},
     "roadproof.runtime.pool": {"--jobs"},
     "roadproof.runtime.process_pool": {"--jobs"},
-    "roadproof.extensions.surveys.explore.asking": {
+    "roadproof.extensions.surveys.explore.explorable": {
         *("--vary", "--steps", "--precision", "--greatest", "--least", "--when"),
     },
     "roadproof.extensions.surveys.classify.classes": {"--among"},
     "roadproof.extensions.surveys.covering": {"--wider"},
+    "roadproof.frontends.api.relations": {"--among"},
     # Names a run of preventable.
     "roadproof.extensions.assurance.case.template": {"--model"},
 }
@@ -475,11 +470,11 @@ def test_a_shell_completes_names_of_scenarios(shell: str, tmp_path: Path) -> Non
 def test_completed_names_are_accepted(tmp_path: Path) -> None:
     from roadproof.frontends.cli.completion import _scenarios
     from roadproof.library.loading import bundled_library
-    from roadproof.library.scenario_references import numbers_called
+    from roadproof.library.scenario_references import numbers_by_name
 
     names = _scenarios("c")
     assert len(names) > 24
-    assert all(numbers_called(bundled_library().select(), name) for name in names)
+    assert all(numbers_by_name(bundled_library().select(), name) for name in names)
 
 
 def test_every_list_of_values_belongs_to_an_option_or_argument() -> None:

@@ -18,16 +18,16 @@ import pytest
 
 from roadproof.engines.prove.properties import choose, template_properties
 from roadproof.engines.search.batches import Engines
-from roadproof.errors import InputError, LostError, MissingSolverError, TextError
-from roadproof.evidence.answer import Answer
+from roadproof.errors import InputError, LostWorkError, MissingSolverError, TextError
+from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.claim import Claim
 from roadproof.frontends.cli import supervising
 from roadproof.frontends.cli.main import main
 from roadproof.runtime import process_pool
-from roadproof.runtime.cost import Cost
+from roadproof.runtime.budget import Cost
 from roadproof.runtime.executors import LostJob
 from roadproof.runtime.pool import in_order, work
-from roadproof.runtime.process_pool import answers_of
+from roadproof.runtime.process_pool import run_jobs
 
 HANGS = 60.0
 
@@ -148,14 +148,14 @@ class Dying:
 
 @pytest.mark.parametrize("processes", [1, 2, 5])
 def test_a_job_whose_worker_dies_is_tried_again(processes: int, tmp_path: Path) -> None:
-    found = dict(answers_of(Dying(tmp_path, {1: 1, 3: 1}), range(6), processes))
+    found = dict(run_jobs(Dying(tmp_path, {1: 1, 3: 1}), range(6), processes))
     assert found == {k: k * k for k in range(6)}
     assert len(list(tmp_path.iterdir())) == 2
 
 
 @pytest.mark.parametrize("processes", [1, 2, 5])
 def test_a_job_that_always_kills_is_left_out_alone(processes: int, tmp_path: Path) -> None:
-    found = dict(answers_of(Dying(tmp_path, {1: 9, 3: 1}), range(6), processes))
+    found = dict(run_jobs(Dying(tmp_path, {1: 9, 3: 1}), range(6), processes))
     lost = found.pop(1)
     assert isinstance(lost, LostJob)
     assert "SIGKILL" in lost.reason
@@ -165,10 +165,10 @@ def test_a_job_that_always_kills_is_left_out_alone(processes: int, tmp_path: Pat
 
 
 def test_other_deaths_are_named(tmp_path: Path) -> None:
-    [(_, lost)] = answers_of(Dying(tmp_path, {0: 9}, signal.SIGUSR1), [0], 1)
+    [(_, lost)] = run_jobs(Dying(tmp_path, {0: 9}, signal.SIGUSR1), [0], 1)
     assert isinstance(lost, LostJob)
     assert "SIGUSR1" in lost.reason
-    [(_, lost)] = answers_of(os._exit, [3], 1)  # type: ignore[type-var]
+    [(_, lost)] = run_jobs(os._exit, [3], 1)  # type: ignore[type-var]
     assert isinstance(lost, LostJob)
     assert "exited with 3" in lost.reason
 
@@ -181,7 +181,7 @@ def test_what_is_lost_is_a_doubt_or_an_error_at_the_end(tmp_path: Path) -> None:
     assert list(answers) == [0, 1, 4]
     kept: list[int] = []
     tmp_path.joinpath("more").mkdir()
-    with pytest.raises(LostError, match="2 of 4 numbers: its process ended each time") as raised:
+    with pytest.raises(LostWorkError, match="2 of 4 numbers: its process ended each time") as raised:
         kept.extend(in_order(work(Dying(tmp_path / "more", {1: 9}), range(4), 2, what="numbers")))
     assert raised.value.exit_code == 20
     assert kept == [0, 4, 9]
@@ -201,7 +201,7 @@ def test_an_error_in_a_worker_is_raised_as_it_is(job: int) -> None:
     with pytest.raises(Exception, match=r".+") as here:
         fail(job)
     with pytest.raises(type(here.value)) as there:
-        list(answers_of(fail, [job], 1))
+        list(run_jobs(fail, [job], 1))
     assert str(there.value) == str(here.value)
 
 
@@ -211,12 +211,12 @@ def give_back(job: int) -> Callable[[], int]:
 
 def test_what_cannot_be_sent_is_an_error_and_no_hang() -> None:
     with pytest.raises(RuntimeError, match="pickle"):
-        list(answers_of(give_back, [1, 2], 2))
+        list(run_jobs(give_back, [1, 2], 2))
 
 
 @dataclass(frozen=True)
 class KindredJob:
-    kin: str
+    affinity: str
 
 
 def test_a_worker_does_kin_one_after_the_other_and_helps_others_at_last() -> None:
@@ -230,24 +230,24 @@ def test_a_worker_does_kin_one_after_the_other_and_helps_others_at_last() -> Non
 
 def test_claims_about_a_scenario_and_the_same_on_other_road_sectors_are_kin() -> None:
     tasks = choose(template_properties(), ["P1", "P3"], "base")
-    kin: dict[object, list[int | None]] = {}
+    affinity: dict[object, list[int | None]] = {}
     for task in tasks:
-        kin.setdefault(task.kin, []).append(task.scenario)
-    assert [*kin.values()] == [[n, n + 8, n + 16] * 2 for n in range(1, 9)]
+        affinity.setdefault(task.affinity, []).append(task.scenario)
+    assert [*affinity.values()] == [[n, n + 8, n + 16] * 2 for n in range(1, 9)]
 
 
 def test_a_claim_whose_process_dies_is_unknown_and_the_others_stand(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    settle = Engines.settle
+    settle = Engines.answer_claim
 
-    def settle_or_die(engines: Engines, claim: Claim, *more: Any) -> tuple[Answer, Cost]:
+    def settle_or_die(engines: Engines, claim: Claim, *more: Any) -> tuple[ClaimAnswer, Cost]:
         if claim.text == "false":
             os.kill(os.getpid(), signal.SIGKILL)
         return settle(engines, claim, *more)
 
-    monkeypatch.setattr(Engines, "settle", settle_or_die)
-    monkeypatch.setattr("roadproof.questions.settle.is_fork_unsafe", lambda: False)
+    monkeypatch.setattr(Engines, "answer_claim", settle_or_die)
+    monkeypatch.setattr("roadproof.questions.decide.is_fork_unsafe", lambda: False)
     claims = ["true", "false", "not false"]
     target = tmp_path / "answer.json"
     assert main(["prove", *claims, "--jobs", "2", "--json", str(target)]) == 20

@@ -1,8 +1,8 @@
 """``python -m core.alone FOLDER``: the core without its extensions, in a tree and with packages of its own.
 
 FOLDER gets the package without ``extensions``, and links to the packages that the core needs, to no others.
-There the core proves the template properties, finds a drive for each scenario, decides all pairs, orders the
-scenarios, and checks all of it; its tests run, too, with ``--tests``.
+There the core proves the template properties, finds a drive for each scenario, decides all pairs, and checks
+all of it; its tests run, too, with ``--tests``.
 """
 
 import argparse
@@ -17,7 +17,9 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("z3-solver", "numpy", "scipy", "highspy", "clarabel", "cvxpy", "sympy", "lark")
 """What the core is installed with, and what these need."""
-FOR_TESTS = ("pytest", "hypothesis")
+FOR_TESTS = ("pytest", "hypothesis", "jsonschema", "cvc5")
+TESTING = {"PYTHONDONTWRITEBYTECODE": "1"}
+_EXTENSION = re.compile(r"^\s*(?:from|import) (?:(?:roadproof\.)?extensions|cli|documents)\b", re.M)
 FOLDERS = (
     "encode",
     "evidence",
@@ -35,11 +37,10 @@ COMMANDS = (
     "prove --out proofs",
     "witness --all --no-pictures --out drives",
     "overlap --no-pictures --out pairs",
-    "order --no-pictures --out order",
     "compare 'scenario_1(SV,POV,L)' 'scenario_4(SV,POV,L)'",
     "list",
     "show 4",
-    "check proofs drives pairs order",
+    "check proofs drives pairs",
 )
 
 
@@ -82,6 +83,25 @@ def make(folder: Path, more: tuple[str, ...] = ()) -> dict[str, str]:
     }
 
 
+def add_tests(folder: Path) -> list[str]:
+    """Add the tests of the core with their helpers; return the paths of those that need no extension."""
+    skipped = shutil.ignore_patterns("extensions", "__pycache__", "documents", "cli", "attacks", "findings")
+    shutil.copytree(ROOT / "tests", folder / "tests", ignore=skipped)
+    for name in ("pyproject.toml", "examples", "docs"):
+        source, target = ROOT / name, folder / name
+        shutil.copytree(source, target) if source.is_dir() else shutil.copy(source, target)
+    files = (x for name in FOLDERS for x in sorted((folder / "tests" / name).glob("test_*.py")))
+    return [str(x.relative_to(folder)) for x in files if not _needs_extension(x)]
+
+
+def _needs_extension(test: Path) -> bool:
+    """Return whether a file of tests, or a helper beside it that it imports, needs an extension."""
+    text = test.read_text("utf-8")
+    beside = re.findall(rf"^from {test.parent.name}\.(\w+) import", text, re.M)
+    helpers = (test.with_name(f"{x}.py") for x in beside)
+    return any(_EXTENSION.search(x) for x in (text, *(y.read_text("utf-8") for y in helpers)))
+
+
 def run(folder: Path, environment: dict[str, str], *words: str) -> subprocess.CompletedProcess[str]:
     """Run Python without the packages of this environment."""
     command = [sys.executable, "-S", *words]
@@ -100,6 +120,13 @@ def main() -> int:
         done = run(folder, environment, "-m", "roadproof", *shell_words(words))
         last = (done.stdout.strip().splitlines() or done.stderr.strip().splitlines() or [""])[-1]
         print(f"{done.returncode}  roadproof {words}: {last}", flush=True)
+        wrong += done.returncode != 0
+    if args.tests:
+        files = add_tests(folder)
+        done = run(folder, environment | TESTING, "-m", "pytest", "-q", "-m", "not long", *files)
+        print(f"{done.returncode}  {len(files)} files of tests: {done.stdout.strip().splitlines()[-1]}")
+        if done.returncode:
+            print(done.stdout[-6000:], done.stderr[-2000:], file=sys.stderr)
         wrong += done.returncode != 0
     loaded = run(folder, environment, "-c", "import roadproof as rp; print(rp.coverage)")
     print(f"{loaded.returncode}  rp.coverage: {loaded.stderr.strip().splitlines()[-1]}")

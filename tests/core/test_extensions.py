@@ -2,20 +2,26 @@
 
 import json
 import re
-from inspect import signature
 from pathlib import Path
 
 import grimp
 import pytest
 from jsonschema import validate
 
-from roadproof.extension import AUDIENCES, GROUP, Extension, added, entries, imported, installed, listed
+from roadproof.extension import (
+    AUDIENCES,
+    GROUP,
+    KEYS,
+    OWN_NAMES,
+    core,
+    import_entry,
+    imported,
+    installed_extensions,
+)
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.cli.overview import COMMANDS
 
 ROOT = Path(__file__).parents[2]
-_PLAIN = ("title", "audience", "label", "needs", "incubating")
-SLOTS = [x for x in signature(Extension).parameters if x not in _PLAIN]
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +35,7 @@ def home(module: str) -> str:
 
 
 def test_extensions_import_those_that_they_say(graph: grimp.ImportGraph) -> None:
-    found: dict[str, set[str]] = {name: set() for name in installed()}
+    found: dict[str, set[str]] = {name: set() for name in installed_extensions()}
     for module in graph.modules:
         mine = home(module)
         others = {home(x) for x in graph.find_modules_directly_imported_by(module)} - {mine, "core"}
@@ -37,30 +43,34 @@ def test_extensions_import_those_that_they_say(graph: grimp.ImportGraph) -> None
             found[mine] |= others
         elif module != GROUP:
             assert not others, module
-    assert found == {name: {*x.record.needs} for name, x in installed().items()}
+    assert found == {name: {*x.record.needs} for name, x in installed_extensions().items()}
 
 
-@pytest.mark.parametrize("slot", SLOTS)
+def test_the_core_imports_no_extension_even_for_types() -> None:
+    whole = grimp.build_graph("roadproof", cache_dir=None)
+    core_modules = {x for x in whole.modules if home(x) == "core" and x != GROUP}
+    wrong = {x for x in core_modules for y in whole.find_modules_directly_imported_by(x) if home(y) != "core"}
+    assert "roadproof" in core_modules
+    assert wrong == set()
+
+
+@pytest.mark.parametrize("slot", KEYS)
 def test_every_entry_is_there(slot: str) -> None:
-    for name in installed():
-        named = getattr(installed()[name].record, slot)
-        known = [x for key in named for x in added(slot, key)] if isinstance(named, dict) else listed(slot)
-        assert all(imported(entry) is not None for entry in known)
-
-
-def test_no_two_extensions_have_one_name_in_a_slot() -> None:
-    for slot in SLOTS:
-        if slot != "options":
-            named = [getattr(x.record, slot) for x in installed().values()]
-            keys = [key for x in named if isinstance(x, dict) for key in x]
-            assert len(keys) == len({*keys}), slot
-            assert {*entries(slot)} == {*keys} if keys else True
+    for x in (core(), *installed_extensions().values()):
+        named = getattr(x.record, slot)
+        if slot == "specifications":
+            assert all((Path(x.folder) / file).is_file() for file in named.values())
+            continue
+        found = named.values() if isinstance(named, dict) else named
+        assert all(import_entry(x.whole(entry)) is not None for entry in found)
+        if slot in OWN_NAMES:
+            assert all(imported(slot, name) is not None for name in named)
 
 
 def test_every_extension_says_for_whom_it_is() -> None:
-    for name, x in installed().items():
+    for name, x in installed_extensions().items():
         assert x.record.audience in AUDIENCES
-        doc = imported(f"{x.package}:__doc__")
+        doc = import_entry(f"{x.package}:__doc__")
         assert re.search(r"\bfor (those|whom)", doc), name
 
 
@@ -74,10 +84,10 @@ def test_the_list_of_extensions_is_what_its_schema_says(capsys: pytest.CaptureFi
     assert main(["extensions", "--json", "-"]) == 0
     said = json.loads(capsys.readouterr().out)
     validate(said, json.loads((ROOT / "docs/schema/extensions.json").read_text("utf-8")))
-    assert [x["name"] for x in said["extensions"]] == [*installed()]
+    assert [x["name"] for x in said["extensions"]] == [*installed_extensions()]
     assert main(["extensions"]) == 0
     told = capsys.readouterr().out
-    assert all(f"  {name} " in told for name in installed())
+    assert all(f"  {name} " in told for name in installed_extensions())
     assert "incubating: storyboards of OpenSCENARIO, which are run here" in told
 
 

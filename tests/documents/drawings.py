@@ -1,4 +1,4 @@
-"""Drawings of docs/explanation/how.md: ``python -m documents.drawings`` writes them into docs/pictures."""
+"""Drawings of docs/explanation/how.md; ``make generated`` writes them into docs/pictures."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -227,8 +227,3 @@ def monitor() -> str:
 
 
 DRAWINGS = {"how-proof.svg": proof, "how-search.svg": search, "how-monitor.svg": monitor}
-
-
-if __name__ == "__main__":
-    for name, draw in DRAWINGS.items():
-        (FOLDER / name).write_text(draw(), "utf-8")

@@ -18,7 +18,7 @@ from documents.reference import PAGES  # noqa: E402
 from roadproof.extensions.pages.viewer_page import design  # noqa: E402
 
 _LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]+)(#[^)]*)?\)")
-_FOR_DEVELOPERS = ("tests", "map")
+_FOR_DEVELOPERS = ("tests", "map", "explanation/glossary")
 _SHIM = "https://unpkg.com/iframe-worker/shim"
 _DATA = re.compile(r"^\[([^\]]+)\]\(([^)\s]+\.csv)\)$", re.M)
 _HEADING = re.compile(r"^## (.+)$", re.M)
@@ -29,8 +29,8 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
     """List the decision records in the navigation."""
     records = sorted(path.name for path in ROOT.joinpath("docs/adr").glob("*.md"))
     assert config.nav is not None
-    explanation = next(entry["Explanation"] for entry in config.nav if "Explanation" in entry)
-    for entry in explanation:
+    developers = next(entry["Developers"] for entry in config.nav if "Developers" in entry)
+    for entry in developers:
         if "Decision records" in entry:
             entry["Decision records"] = [f"adr/{name}" for name in records]
     return config
@@ -47,7 +47,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
     """Show data as tables, name files outside docs/ instead of linking to them, title blocks of files."""
     here = Path(config.docs_dir, page.file.src_uri).parent
-    if here.name == "adr" or page.file.name in _FOR_DEVELOPERS:
+    if here.name == "adr" or page.file.src_uri.removesuffix(".md").endswith(_FOR_DEVELOPERS):
         page.meta["search"] = {"boost": 0.2}  # the search lists guides for users first
 
     def outside(link: re.Match[str]) -> str:

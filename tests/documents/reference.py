@@ -1,11 +1,12 @@
 """Reference pages that are generated from the program.
 
-``PYTHONPATH=tests python -m documents.reference`` writes those of the checkout; the site has the others, too.
+``make generated`` writes those of the checkout; the site has the others, too.
 """
 
 import argparse
 import json
 import re
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from inspect import getdoc, isclass, isfunction
@@ -13,10 +14,10 @@ from pathlib import Path
 from typing import Any, get_args
 
 import roadproof
-from roadproof.frontends.api.answer import Answer
+from roadproof.frontends.api.answer import BaseAnswer
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.api.phrases import Phrase
-from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.cli.help import command_parser
 from roadproof.frontends.cli.overview import COMMANDS, groups
 from roadproof.library.loading import bundled_library
@@ -236,11 +237,13 @@ def python_api() -> str:
 def _question(name: str, function: Callable[..., object]) -> str:
     """A row: a function, the first sentence about it, its answer and members; empty for parts of formulas."""
     answer: object = function.__annotations__["return"]
+    if isinstance(answer, str):  # of a module whose annotations are text
+        answer = vars(sys.modules[function.__module__]).get(re.split(r"[\[ ]", answer)[0], answer)
     answer = next(iter(get_args(answer)), answer)
     if not isclass(answer) or answer is Phrase or answer is Definitions:
         return ""
     about = (getdoc(function) or "").partition("\n\n")[0].replace("``", "`")
-    every = _members(QuestionAnswers) if issubclass(answer, Answer) else set()
+    every = _members(QuestionAnswers) if issubclass(answer, BaseAnswer) else set()
     members = sorted(x for x in _members(answer) - every if x[0] != "_")
     shown = ", ".join(map(_code, members))
     return f"| [{name}](#roadproof.{name}) | {_cell(about)} | `{answer.__name__}` | {shown} |"
@@ -300,7 +303,3 @@ PAGES: dict[str, Callable[[], str]] = {
 """The pages that are generated when the site is built, and the functions that write them."""
 CHECKED_IN: dict[str, Callable[[], str]] = {"reference/exit-codes.md": exit_codes}
 """The generated pages of the checkout."""
-
-if __name__ == "__main__":
-    for page, content in CHECKED_IN.items():
-        (ROOT / "docs" / page).write_text(content(), "utf-8")

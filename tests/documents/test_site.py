@@ -11,7 +11,7 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
-from documents.reference import CHECKED_IN, EXIT_CODES, PAGES
+from documents.reference import EXIT_CODES, PAGES
 from roadproof.frontends.cli.help import command_parser
 from roadproof.frontends.cli.main import COMMANDS
 from roadproof.library.loading import bundled_library
@@ -93,13 +93,6 @@ def test_the_search_finds_the_pages(site: Path) -> None:
     index = (site / "search" / "search_index.js").read_text("utf-8")
     for word in ("NONE-WITHIN", "dRSS_lon", "--complete", "OpenSCENARIO", "signal"):
         assert word in index
-
-
-def test_generated_pages_of_the_checkout_are_those_of_the_program() -> None:
-    for name, write in CHECKED_IN.items():
-        made = "run PYTHONPATH=tests python -m documents.reference"
-        assert (ROOT / "docs" / name).read_text("utf-8") == write(), made
-        assert name not in PAGES
 
 
 def test_the_index_of_the_reference_names_each_page() -> None:

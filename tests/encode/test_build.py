@@ -12,10 +12,16 @@ from hypothesis import strategies as st
 from encode import cases
 from examples import some
 from planting import plant
-from roadproof.engines.encode import along
-from roadproof.engines.encode.build import NONE, Assumptions, encode_formula, frame, ground
-from roadproof.engines.encode.inequalities import inequalities_of, polynomial_of
-from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode import shift_invariance
+from roadproof.engines.encode.build import (
+    NO_MARGIN,
+    Assumptions,
+    assemble_problem,
+    encode_formula,
+    ground_atoms,
+)
+from roadproof.engines.encode.inequalities import inequalities_of, term_polynomial
+from roadproof.engines.encode.motion import ColumnLayout
 from roadproof.engines.encode.problem import All, AnyOf, Leaf, all_of, any_of, evaluate, implicant, nodes
 from roadproof.engines.encode.unroll import Grid, unroll
 from roadproof.errors import UsageError
@@ -49,9 +55,9 @@ def steady(layout, places):
 
 def build_problem(assumptions):
     """The problem of any drive at all."""
-    layout = Layout(tuple(CARS), GRID)
+    layout = ColumnLayout(tuple(CARS), GRID)
     wanted = encode_formula(f.Truth(True), CARS, layout, assumptions)
-    return frame(wanted, ROAD, CARS, layout, assumptions), layout
+    return assemble_problem(wanted, ROAD, CARS, layout, assumptions), layout
 
 
 def is_solution(problem, values):
@@ -93,13 +99,16 @@ def test_columns_across_end_where_the_road_does():
 
 
 def test_what_holds_at_the_last_sample_holds_for_ever_unless_told_otherwise():
-    layout = Layout(("A",), GRID)
+    layout = ColumnLayout(("A",), GRID)
     near = f.Compare(t.Signal("s", "A"), "<=", t.number(50))  # at 40 m at the end
     circuit = unroll(f.Always(f.Interval(t.number(0), None), near), GRID)
     values = steady(layout, {"A": (0, Fraction(3))})
     found = [
         evaluate(made, lambda x: x.polynomial.value(lambda k: values[k]) >= 0)
-        for made in (ground(circuit, CARS, layout, NONE), ground(circuit, CARS, layout, NONE, False))
+        for made in (
+            ground_atoms(circuit, CARS, layout, NO_MARGIN),
+            ground_atoms(circuit, CARS, layout, NO_MARGIN, False),
+        )
     ]
     assert found == [False, True]
 
@@ -117,12 +126,12 @@ def bound(text, road="main-2", lane="main-1"):
 
 def same(text, road="main-2"):
     formula, cars = bound(text, road)
-    return along.is_same_everywhere(formula, ROADS[road], cars)
+    return shift_invariance.is_shift_invariant(formula, ROADS[road], cars)
 
 
 def starts(text, road="main-2"):
     formula, cars = bound(text, road)
-    return along.starting_range([formula], ROADS[road], cars, HALVES, Fraction(80))
+    return shift_invariance.starting_range([formula], ROADS[road], cars, HALVES, Fraction(80))
 
 
 @pytest.mark.parametrize(
@@ -171,7 +180,7 @@ def is_right_about_moved_drives():
         query = read_claim(BASE, case.text)
         lanes = {name: case.lanes[name] for name in query.lanes}
         formula = bind(query.formula, ROADS[case.road], lanes, VALUES)
-        if along.is_same_everywhere(formula, ROADS[case.road], dict.fromkeys(query.vehicles, CAR)):
+        if shift_invariance.is_shift_invariant(formula, ROADS[case.road], dict.fromkeys(query.vehicles, CAR)):
             for by in (Fraction(-1000, 3), Fraction(1, 10), Fraction(250)):
                 cars = {n: replace(m, s=m.s + by) for n, m in case.drive.vehicles.items()}
                 if not holds_on_samples(case.text, case.road, Drive(cars), case.grid, case.lanes):
@@ -180,11 +189,11 @@ def is_right_about_moved_drives():
 
 
 FAULTS = {
-    "every road is endless": ("is_same_everywhere", "endless and", "True and"),
-    "places are no matter": ("is_same_everywhere", "and not names_places(formula, vehicles)", ""),
-    "each vehicle for itself": ("names_places", "any(", "all("),
+    "every road is endless": ("is_shift_invariant", "endless and", "True and"),
+    "places are no matter": ("is_shift_invariant", "and not depends_on_place(formula, vehicles)", ""),
+    "each vehicle for itself": ("depends_on_place", "any(", "all("),
     "the first factor only": (
-        "slope_along",
+        "growth_along",
         "if _is_moved(signal, place):",
         "if _is_moved(signal, place) and k == 0 and 1 > 2:",
     ),
@@ -200,7 +209,7 @@ def test_faults_in_symmetry_are_caught(fault, monkeypatch):
 
     if fault == next(iter(FAULTS)):
         assert right()
-    plant(monkeypatch, along, *FAULTS[fault])
+    plant(monkeypatch, shift_invariance, *FAULTS[fault])
     assert not right()
 
 
@@ -314,7 +323,7 @@ def test_an_implicant_is_true_and_suffices(left, right, at):
 
 def test_polynomials_are_expanded():
     v = t.Signal("v_lon", "A")
-    polynomial = polynomial_of(t.Power(t.Sum((v, t.number(3))), 2), SIZES)
+    polynomial = term_polynomial(t.Power(t.Sum((v, t.number(3))), 2), SIZES)
     q = ("A", "v_lon")
     assert polynomial.terms == {(q, q): 1, (q,): 6, (): 9}
 

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from examples import some
-from roadproof.engines.encode.build import Assumptions, inequality_at, inequality_for_ever
-from roadproof.engines.encode.motion import Layout, encode_motions
+from roadproof.engines.encode.build import Assumptions, inequality_at, inequality_from_last_sample
+from roadproof.engines.encode.motion import ColumnLayout, encode_motions
 from roadproof.engines.encode.place import move_one_way, rectangles, stay_apart, stay_on_road
-from roadproof.engines.encode.problem import AnyOf, Inequality, evaluate
+from roadproof.engines.encode.problem import AnyOf, Inequality, LimitKind, Origin, evaluate
 from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.search.shape import round_drive
 from roadproof.world.models import load_road, load_vehicle
@@ -21,6 +21,7 @@ from roadproof.world.polynomial import affine, variable
 
 quiet = settings(deadline=None, derandomize=True)
 GRID = Grid(Fraction(1, 2), 4)
+AT_END = Origin(LimitKind.START, 4)
 CAR = load_vehicle("car")
 WIDE = (Fraction(-1000), Fraction(1000))
 
@@ -28,7 +29,7 @@ WIDE = (Fraction(-1000), Fraction(1000))
 def motions(natural=False, straight=()):
     cars = {"A": CAR, "B": CAR}
     places = dict.fromkeys(cars, WIDE)
-    layout = Layout(tuple(cars), GRID)
+    layout = ColumnLayout(tuple(cars), GRID)
     columns, rows = encode_motions(cars, layout, places, places, natural, Fraction(0), straight)
     return SimpleNamespace(layout=layout, columns=columns, rows=rows)
 
@@ -108,7 +109,7 @@ def test_natural_motions_start_and_end_straight_and_do_not_jerk():
 @settings(quiet, max_examples=60)
 @given(accelerations)
 def test_a_rounded_drive_is_where_its_columns_say(made):
-    layout = Layout(("A",), GRID)
+    layout = ColumnLayout(("A",), GRID)
     values = columns_of(made)
     exact = round_drive(layout, {"A": CAR}, values, None)
     near = round_drive(layout, {"A": CAR}, [float(v) for v in values])
@@ -122,7 +123,7 @@ def test_a_rounded_drive_is_where_its_columns_say(made):
 
 
 def test_an_acceleration_is_that_of_the_piece_which_begins():
-    layout = Layout(("A",), GRID)
+    layout = ColumnLayout(("A",), GRID)
     values = columns_of([(Fraction(n), Fraction(0)) for n in (1, 2, 3, -1)])
     found = [layout.state("A", "a_lon", k).value(lambda c: values[c]) for k in range(5)]
     assert found == [1, 2, 3, -1, 0]
@@ -131,13 +132,13 @@ def test_an_acceleration_is_that_of_the_piece_which_begins():
 @settings(quiet, max_examples=some(200))
 @given(st.integers(-3, 3), st.integers(-3, 3), st.integers(-2, 2), st.integers(-40, 40), st.booleans())
 def test_a_fact_for_ever_stays_true(factor, square, constant, start, strict):
-    layout = Layout(("A",), GRID)
+    layout = ColumnLayout(("A",), GRID)
     signal = ("A", "s")
     polynomial = affine([(signal, Fraction(factor))], Fraction(constant)) + (
         variable(signal) * variable(signal)
     ).scaled(Fraction(square))
     values = columns_of([(Fraction(0), Fraction(0))] * 4, Fraction(20), Fraction(start))
-    circuit = inequality_for_ever(Inequality(polynomial, strict), layout)
+    circuit = inequality_from_last_sample(Inequality(polynomial, strict), layout, AT_END)
 
     def true(inequality):
         value = inequality.polynomial.value(lambda c: values[c])
@@ -150,7 +151,7 @@ def test_a_fact_for_ever_stays_true(factor, square, constant, start, strict):
             assert value > 0 or (value == 0 and not strict)
     else:
         assert (
-            true(inequality_at(Inequality(polynomial, strict), layout, 4)) is False
+            true(inequality_at(Inequality(polynomial, strict), layout, AT_END)) is False
             or factor < 0
             or square != 0
         )
@@ -167,7 +168,7 @@ def test_rectangles_of_a_merge_cover_the_road_and_nothing_else():
 @settings(quiet, max_examples=some(200))
 @given(st.integers(-8, 8), st.integers(-8, 8))
 def test_boxes_apart_are_those_that_do_not_overlap(ds, dd):
-    layout = Layout(("A", "B"), GRID)
+    layout = ColumnLayout(("A", "B"), GRID)
     still = [(Fraction(0), Fraction(0))] * 4
     shift = (Fraction(ds), 3 + Fraction(dd, 2))
     values = columns_of(still) + columns_of(still, Fraction(25), *shift)
@@ -181,7 +182,7 @@ def test_boxes_apart_are_those_that_do_not_overlap(ds, dd):
 
 @pytest.mark.parametrize(("d", "on_road"), [("9/5", True), ("7", True), ("17/10", False), ("71/10", False)])
 def test_the_box_stays_on_the_road(d, on_road):
-    layout = Layout(("A",), GRID)
+    layout = ColumnLayout(("A",), GRID)
     values = columns_of([(Fraction(0), Fraction(0))] * 4, d=Fraction(d))
     circuit = stay_on_road(layout, load_road("main-2"), "A", CAR, True)
     assert (
@@ -190,7 +191,7 @@ def test_the_box_stays_on_the_road(d, on_road):
 
 
 def test_a_merge_lane_must_be_left_before_it_ends():
-    layout = Layout(("A",), GRID)
+    layout = ColumnLayout(("A",), GRID)
     values = columns_of([(Fraction(0), Fraction(0))] * 4, d=Fraction(-1))
     circuit = stay_on_road(layout, load_road("merge"), "A", CAR, True)
     assert not isinstance(circuit, AnyOf)
@@ -210,7 +211,7 @@ def test_a_merge_lane_must_be_left_before_it_ends():
 )
 def test_natural_drives_go_across_in_one_direction(across, one_way):
     values = columns_of([(Fraction(0), Fraction(b)) for b in across])
-    circuit = move_one_way(Layout(("A",), GRID), "A")
+    circuit = move_one_way(ColumnLayout(("A",), GRID), "A")
     assert (
         evaluate(circuit, lambda inequality: inequality.polynomial.value(lambda c: values[c]) >= 0) == one_way
     )
@@ -218,10 +219,10 @@ def test_natural_drives_go_across_in_one_direction(across, one_way):
 
 def test_plain_manners_keep_what_is_not_a_matter_of_taste():
     assumptions = Assumptions(reach=Fraction(33), collisions=True, straight=frozenset({"A"}))
-    assert assumptions.plain() == replace(
+    assert assumptions.without_comfort() == replace(
         assumptions,
         natural=False,
         straight=frozenset(),
-        margin=assumptions.plain().margin,
-        apart=assumptions.plain().apart,
+        margin=assumptions.without_comfort().margin,
+        apart=assumptions.without_comfort().apart,
     )

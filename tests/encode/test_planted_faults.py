@@ -13,14 +13,14 @@ from encode import cases
 from encode.test_motion import columns_of, motions, satisfied
 from planting import plant
 from roadproof.engines.encode import inequalities, motion, place, unroll
-from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.motion import ColumnLayout
 from roadproof.engines.encode.problem import (
     All,
     AnyOf,
-    Column,
     Inequality,
     Leaf,
     Problem,
+    RealColumn,
     Row,
     Unknown,
     any_of,
@@ -28,7 +28,7 @@ from roadproof.engines.encode.problem import (
     implicant,
 )
 from roadproof.engines.encode.unroll import Grid
-from roadproof.engines.solve import bounds, milp
+from roadproof.engines.solve import big_m, bounds, milp
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.world.models import load_vehicle
@@ -122,7 +122,9 @@ def test_positions_by_the_speed_at_the_start_are_caught(monkeypatch):
                 moved = [(layout.column(name, where, k + 1), Fraction(1))]
                 moved += [(layout.column(name, where, k), Fraction(-1))]
                 moved += [(layout.column(name, speed, k), -layout.grid.dt)]
-                yield motion.row_of(affine(moved), Fraction(0), Fraction(0))
+                yield motion.row_of(
+                    affine(moved), Fraction(0), Fraction(0), motion.Origin(motion.LimitKind.MOTION, 0)
+                )
 
     driven = columns_of([(Fraction(1), Fraction(0))] * 4) * 2
     assert satisfied(motions(), driven)
@@ -173,21 +175,22 @@ def test_faults_in_bounds_are_caught(wrong, monkeypatch):
 
 def big_m_disagrees():
     return any(
-        milp.solve_mixed(problem, milp.box_of(problem)).status != exactly(problem) for problem in problems(12)
+        milp.solve_mixed(problem, milp.column_box(problem)).status != exactly(problem)
+        for problem in problems(12)
     )
 
 
 def test_a_big_m_that_is_too_small_is_caught(monkeypatch):
     assert not big_m_disagrees()
 
-    def tight(self, affine, guard, margin):
-        least = margin - affine.constant
+    def tight(self, bound, guard):
+        least = bound.margin - bound.affine.constant
         if guard is None:
-            self.add(affine.terms, least, float("inf"))
+            self.add(bound.affine.terms, least, float("inf"), None)
         else:
-            self.add([*affine.terms, (guard, -1.0)], least - 1.0, float("inf"))
+            self.add([*bound.affine.terms, (guard, -1.0)], least - 1.0, float("inf"), None)
 
-    monkeypatch.setattr(milp._Tableau, "_bound", tight)
+    monkeypatch.setattr(big_m._MilpBuilder, "_bound", tight)
     assert big_m_disagrees()
 
 
@@ -195,18 +198,18 @@ def test_a_big_m_without_its_guard_is_caught(monkeypatch):
     def unguarded(self, node, guard, chosen):
         true_hold(self, node, None, chosen)
 
-    true_hold = milp._Tableau._hold
-    monkeypatch.setattr(milp._Tableau, "_hold", unguarded)
+    true_hold = big_m._MilpBuilder._hold
+    monkeypatch.setattr(big_m._MilpBuilder, "_hold", unguarded)
     assert big_m_disagrees()
 
 
 def test_a_disjunction_that_asks_for_nothing_is_caught(monkeypatch):
-    true_add = milp._Tableau.add
+    true_add = big_m._MilpBuilder.add
 
-    def lax(self, terms, low, high):
-        true_add(self, terms, 0.0 if low == 1.0 and high == float("inf") else low, high)
+    def lax(self, terms, low, high, source):
+        true_add(self, terms, 0.0 if low == 1.0 and high == float("inf") else low, high, source)
 
-    monkeypatch.setattr(milp._Tableau, "add", lax)
+    monkeypatch.setattr(big_m._MilpBuilder, "add", lax)
     assert big_m_disagrees()
 
 
@@ -218,7 +221,7 @@ def test_an_implicant_of_the_wrong_part_would_not_be_true():
 
 def decided_wrongly():
     """Inequalities that are 0 at an end of their box, and are said to be true or false all over it."""
-    column = (Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
+    column = (RealColumn(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
     wrong = set()
     for factor, constant in ((1, -1), (-1, 0), (1, 0), (-1, 1)):
         for strict in (False, True):
@@ -226,7 +229,9 @@ def decided_wrongly():
             somewhere = exactly(Problem(column, (), All((Leaf(inequality),)))) == "found"
             values = (Fraction(constant), Fraction(factor + constant))
             everywhere = all(value > 0 or (value == 0 and not strict) for value in values)
-            inner, outer = (bounds.approximate(inequality, [(0.0, 1.0)], side) for side in ("inner", "outer"))
+            inner, outer = (
+                bounds.affine_bounds(inequality, [(0.0, 1.0)], side) for side in ("inner", "outer")
+            )
             if somewhere and AnyOf in (type(inner), type(outer)):
                 wrong.add("false")
             if not everywhere and isinstance(inner, All):
@@ -253,7 +258,7 @@ def test_a_fact_that_is_0_at_an_end_is_not_decided_by_it(fault, monkeypatch):
 def relaxation_loses_something():
     """Whether a problem that is feasible by a hair is infeasible once bounds and rows are doubles."""
     third, tenth = Fraction(1, 3), Fraction(1, 10)
-    columns = tuple(Column(Unknown("x", "s", k), third * k, third * k + tenth) for k in range(3))
+    columns = tuple(RealColumn(Unknown("x", "s", k), third * k, third * k + tenth) for k in range(3))
     # x0 is 0 by the first row, x1 is 1/3 and x2 is 2/3 by inequalities.
     rows = (Row({0: third, 1: -third}, None, -(third**2)), Row({0: tenth, 2: third}, None, 2 * third**2))
     inequalities = [affine([(0, Fraction(-1))]), affine([(1, Fraction(-7))], 7 * third)]
@@ -264,13 +269,13 @@ def relaxation_loses_something():
         columns, rows, All(tuple(Leaf(Inequality(p, False)) for p in (*inequalities, *squares)))
     )
     assert exactly(problem) == "found"
-    return milp.solve_mixed(problem, milp.box_of(problem), "outer", 2).status == "infeasible"
+    return milp.solve_mixed(problem, milp.column_box(problem), "outer", 2).status == "infeasible"
 
 
 INWARDS = {
-    "rows": (milp, "solve_mixed", "float(row.high) + slack", "float(row.high) - 10 * slack"),
-    "bounds of columns": (milp, "solve_mixed", "loosened(box) if", "[(a + 1e-4, b) for a, b in box] if"),
-    "inequalities": (bounds, "_leaf", "Bound(affine, -slack)", "Bound(affine, 10 * slack)"),
+    "rows": (milp, "encode_mixed", "float(row.high) + slack", "float(row.high) - 10 * slack"),
+    "bounds of columns": (milp, "encode_mixed", "loosened(box) if", "[(a + 1e-4, b) for a, b in box] if"),
+    "inequalities": (bounds, "_leaf", "Bound(affine, -slack,", "Bound(affine, 10 * slack,"),
 }
 
 
@@ -288,7 +293,7 @@ def overlap_differs():
     """
     car = load_vehicle("car")
     truck = replace(car, length=Fraction(16), width=Fraction(5, 2))
-    layout = Layout(("A", "B"), Grid(Fraction(1), 1))
+    layout = ColumnLayout(("A", "B"), Grid(Fraction(1), 1))
     none = (Fraction(0), Fraction(0))
     kept, at_samples = (
         place.stay_apart(layout, ("A", car), ("B", truck), none, between) for between in (True, False)
@@ -313,8 +318,8 @@ APART = {
     "lengths for widths": ('("d", "width", gaps[1])', '("d", "length", gaps[1])'),
     "widths for lengths": ('("s", "length", gaps[0])', '("s", "width", gaps[0])'),
     "one side only": ("((first, second), (second, first))", "((first, second),)"),
-    "the last sample is left out": ("_spells(layout.grid.steps, between)", "_spells(0, between)"),
-    "the first sample is left out": ("_spells(layout.grid.steps, between)", "[(layout.grid.steps,)]"),
+    "the last sample is left out": ("_step_groups(layout.grid.steps, between)", "_step_groups(0, between)"),
+    "the first sample is left out": ("_step_groups(layout.grid.steps, between)", "[(layout.grid.steps,)]"),
 }
 
 
@@ -328,4 +333,4 @@ def test_boxes_measured_wrongly_are_caught(fault, monkeypatch):
 @pytest.mark.parametrize("signal", ["j_up", "a_up", "v", "x_lat", ""])
 def test_a_signal_that_is_not_known_is_refused(signal):
     with pytest.raises(AssertionError, match=f"'{signal}'$"):
-        Layout(("A",), Grid(Fraction(1), 1)).state("A", signal, 0)
+        ColumnLayout(("A",), Grid(Fraction(1), 1)).state("A", signal, 0)

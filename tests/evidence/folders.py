@@ -11,9 +11,10 @@ from typing import Any
 from roadproof.engines.solve import smt
 from roadproof.evidence.finding import Finding, exit_code
 from roadproof.frontends.api.checking import check as check_all
-from roadproof.questions.data import QUESTION, read_question
+from roadproof.questions.data import read_question
+from roadproof.questions.question import QUESTION
 from roadproof.runtime.budget import Effort
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.package_data import shipped_folder
 
 # A template property, one more that is like it, the guarantee, a control with a drive and one with a trace.
 CHOSEN = ("P1-scenario-04-base", "P2-base", "P9-base", "C4-scenario-04-base", "C5-base")
@@ -21,7 +22,7 @@ CHOSEN = ("P1-scenario-04-base", "P2-base", "P9-base", "C4-scenario-04-base", "C
 
 @cache
 def answer(script: str) -> str:
-    return smt.ask(script, meter=Effort(20).meter())
+    return smt.check_sat(script, meter=Effort(20).meter())
 
 
 def check(*paths: Path, specs: tuple[Path, ...] = ()) -> list[Finding]:
@@ -36,12 +37,12 @@ def code(*paths: Path) -> int:
 def some_proofs(folder: Path) -> Path:
     """A folder with the evidence of ``CHOSEN`` and the question that asks for it."""
     folder.mkdir(parents=True, exist_ok=True)
-    question = json.loads((shipped("proofs") / QUESTION).read_text("utf-8"))
-    names = [x.name for x in read_question(shipped("proofs")).tasks]
+    question = json.loads((shipped_folder("proofs") / QUESTION).read_text("utf-8"))
+    names = [x.name for x in read_question(shipped_folder("proofs")).tasks]
     claims = question["asked"]["claims"]
     question["asked"]["claims"] = [x for name, x in zip(names, claims, strict=True) if name in CHOSEN]
     for name in CHOSEN:
-        shutil.copy(shipped("proofs") / f"{name}.json", folder)
+        shutil.copy(shipped_folder("proofs") / f"{name}.json", folder)
     write(folder / QUESTION, question)
     return folder
 

@@ -6,10 +6,10 @@ one, without a finder.
 
 import re
 
-from roadproof.engines.solve.smt import Satisfiability, ask
+from roadproof.engines.solve.smt import Satisfiability, check_sat
 from roadproof.evidence import derivation
 from roadproof.evidence.atoms import Atoms
-from roadproof.evidence.times import ZERO, at, moment_of
+from roadproof.evidence.times import ZERO, moment_of, named_moment
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
@@ -34,21 +34,21 @@ def saturated(specification: Specification, claim: str, rounds: int = 4, most: i
     names: dict[derivation.Site, str] = {}
     instances: dict[derivation.Site, tuple[str, ...]] = {}
     for _ in range(rounds):
-        walk = derivation._start(goal, atoms, instances, names, bounds, query.lanes)
+        walk = derivation._new_derivation(goal, atoms, instances, names, bounds, query.lanes)
         walk.truth(goal, False, ZERO)
-        for site in sorted(filter(_is_settled, walk.named - set(names)), key=str):
+        for site in sorted(filter(_is_settled, walk.met_existentials - set(names)), key=str):
             names[site] = f"{lane_prefix if _on_road(site) else 't'}{len(names) + 1}"
-        times = [ZERO, *(at(name) for site, name in names.items() if not _on_road(site))]
+        times = [ZERO, *(named_moment(name) for site, name in names.items() if not _on_road(site))]
         pool = [*times, *(time + shift for time in times for shift in shifts)]
         lanes = [*query.lanes, *(name for site, name in names.items() if _on_road(site))]
-        for site in filter(_is_settled, walk.instanced):
+        for site in filter(_is_settled, walk.met_universals):
             new = lanes if _on_road(site) else map(str, pool)
             instances[site] = tuple(dict.fromkeys([*instances.get(site, ()), *new]))[:most]
-    lemmas: tuple[derivation.Lemma, ...] = ()
-    walk = derivation._start(goal, atoms, instances, names, bounds, query.lanes)
+    lemmas: tuple[derivation.StateLemma, ...] = ()
+    walk = derivation._new_derivation(goal, atoms, instances, names, bounds, query.lanes)
     walk.truth(goal, False, ZERO)
-    named = {site: name for site, name in names.items() if site in walk.named}
-    made = {site: texts for site, texts in instances.items() if site in walk.instanced}
+    named = {site: name for site, name in names.items() if site in walk.met_existentials}
+    made = {site: texts for site, texts in instances.items() if site in walk.met_universals}
     return derivation.derive_query(goal, atoms, made, named, lemmas, bounds, query.lanes)
 
 
@@ -63,4 +63,4 @@ def _on_road(site: derivation.Site) -> bool:
 
 def probe(specification: Specification, claim: str, units: float = 2.0) -> Satisfiability:
     """z3's answer to the saturated query: ``unsat`` would prove ``claim``."""
-    return ask(saturated(specification, claim), meter=Effort(units).meter())
+    return check_sat(saturated(specification, claim), meter=Effort(units).meter())

@@ -9,16 +9,19 @@ from functools import cache
 
 import pytest
 
-from asking import prove
+from engine_calls import prove
 from evidence.test_drive_file import FILE, LIBRARY
 from proving.claims import specification
-from roadproof.engines.solve.smt import ask
+from rejection import rejection_reason
+from roadproof.engines.solve.smt import check_sat
 from roadproof.errors import InputError
 from roadproof.evidence import derivation, judged
 from roadproof.evidence.atoms import Atoms
-from roadproof.evidence.certificate import Certificate, certify, read_certificate, refusal, to_json
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.certificate_file import read_certificate, to_json
+from roadproof.evidence.certify import certify
 from roadproof.evidence.judged import judge_file
-from roadproof.evidence.sites import Lemma, Site
+from roadproof.evidence.sites import Site, StateLemma
 from roadproof.evidence.times import ZERO
 from roadproof.library import bind
 from roadproof.library.bind import default_values, values_with
@@ -26,7 +29,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Library, Source
 from roadproof.runtime.budget import Effort
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.package_data import shipped_folder
 from roadproof.world.units import UNITS
 from tables import read_table
 
@@ -43,14 +46,14 @@ OWN = (
 @cache
 def certificate(name: str) -> Certificate:
     if name in SHIPPED:
-        return read_certificate(shipped("proofs") / f"{name}.json")
+        return read_certificate(shipped_folder("proofs") / f"{name}.json")
     made = prove(specification(), name, Effort(10)).certificate
     assert made is not None
     return made
 
 
 def check(tampered: Certificate) -> str | None:
-    return refusal(tampered, library, lambda query: ask(query, meter=Effort(20).meter()))
+    return rejection_reason(tampered, library, lambda query: check_sat(query, meter=Effort(20).meter()))
 
 
 def rederived(changed: Certificate) -> Certificate:
@@ -62,15 +65,15 @@ def rederived(changed: Certificate) -> Certificate:
     bounds = {name: p.bound for name, p in library.parameters.items()}
     names, instances = dict(changed.names), dict(changed.instances)
     for _ in range(5):
-        walk = derivation._start(goal, atoms, instances, names, bounds, query.lanes)
+        walk = derivation._new_derivation(goal, atoms, instances, names, bounds, query.lanes)
         with suppress(InputError):
             walk.truth(goal, False, ZERO)
-        names = {site: name for site, name in names.items() if site in walk.named}
+        names = {site: name for site, name in names.items() if site in walk.met_existentials}
         known = {*names.values(), *bounds, *query.lanes}
         instances = {
             site: tuple(text for text in texts if set(re.findall(r"[A-Za-z_]\w*", text)) <= known)
             for site, texts in instances.items()
-            if site in walk.instanced
+            if site in walk.met_universals
         }
     return certify(
         chosen,
@@ -93,7 +96,12 @@ def test_a_certificate_goes_through_a_file_and_is_accepted(name, tmp_path):
 @pytest.mark.parametrize("name", SHIPPED)
 def test_cvc5_accepts_it_too(name):
     pytest.importorskip("cvc5", reason="cvc5 is not installed: pip install cvc5")
-    assert refusal(certificate(name), library, lambda query: ask(query, "cvc5", Effort(20).meter())) is None
+    assert (
+        rejection_reason(
+            certificate(name), library, lambda query: check_sat(query, "cvc5", Effort(20).meter())
+        )
+        is None
+    )
 
 
 def with_one_instance_less(whole: Certificate):
@@ -133,7 +141,7 @@ def test_a_lemma_that_does_not_always_hold_is_noticed(name):
     for place, lemma in enumerate(whole.lemmas):
         for turned in range(len(lemma.literals)):
             literals = tuple((n, p != (k == turned)) for k, (n, p) in enumerate(lemma.literals))
-            wrong = (*whole.lemmas[:place], Lemma(literals, lemma.moments), *whole.lemmas[place + 1 :])
+            wrong = (*whole.lemmas[:place], StateLemma(literals, lemma.moments), *whole.lemmas[place + 1 :])
             altered = replace(whole, lemmas=wrong)
             assert "not the one" in check(altered)
             assert "answered" in check(rederived(altered))
@@ -142,11 +150,11 @@ def test_a_lemma_that_does_not_always_hold_is_noticed(name):
 def test_an_invented_lemma_proves_nothing():
     claim = "fasterThan(SV,POV) -> fasterThan(POV,SV)"
     faster, slower = "fasterThan(SV, POV)", "fasterThan(POV, SV)"
-    invented = Lemma(((faster, False), (slower, True)), ("0",))
+    invented = StateLemma(((faster, False), (slower, True)), ("0",))
     forged = certify(specification(), read_claim(specification(), claim), ({}, {}), (invented,))
-    assert ask(forged.queries[0][1]) == "unsat"
+    assert check_sat(forged.queries[0][1]) == "unsat"
     assert "'lemma 1, case 1 of 1' was answered sat" in check(forged)
-    empty = certify(specification(), read_claim(specification(), claim), ({}, {}), (Lemma((), ("0",)),))
+    empty = certify(specification(), read_claim(specification(), claim), ({}, {}), (StateLemma((), ("0",)),))
     assert "lemma 1" in check(empty)
 
 
@@ -208,7 +216,7 @@ CHANGES = {
     "a name for a universal": lambda c: replace(
         c, names={**c.names, **{site: f"t{90 + k}" for k, site in enumerate(c.instances)}}
     ),
-    "a lemma over no atom": lambda c: replace(c, lemmas=(Lemma((("atLane(SV, L9)", True),), ("0",)),)),
+    "a lemma over no atom": lambda c: replace(c, lemmas=(StateLemma((("atLane(SV, L9)", True),), ("0",)),)),
 }
 
 

@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.question import SearchOptions, Setting, exists
-from roadproof.evidence.claim import Claim, Exists, On, Valid, claim_of, valid_under
+from roadproof.engines.setting import Search, SearchOptions, Setting, exists_mode
+from roadproof.evidence.assuming import valid_under
+from roadproof.evidence.claim import Claim, Exists, On, Valid, claim_of
 from roadproof.library.elaborate import elaborate, read_claim
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Source, Specification
@@ -98,7 +98,7 @@ def test_shared_parts_leave_the_digest() -> None:
     home = specification()
     query = read_claim(home, TEXT)
     apart = elaborate(specification(SPEC + "\n"), query.claim)
-    shared = f.share([apart.formula], lambda x: x)[0]
+    shared = f.hash_cons([apart.formula], lambda x: x)[0]
     assert digest(query.formula) == digest(apart.formula) == digest(shared)
 
 
@@ -122,7 +122,7 @@ def test_every_setting_of_a_search_but_values_and_effort_is_part_of_its_claim() 
     search = Search(home, read_claim(home, TEXT), Setting(horizon=Fraction(5)), SearchOptions("mild"))
     assert search.claim.mode == Exists(horizon=Fraction(5), objective="mild")
     others = [replace(Setting(), collisions=True), replace(Setting(), natural=False)]
-    assert len({digest(exists(x, SearchOptions())) for x in (Setting(), *others)}) == 3
+    assert len({digest(exists_mode(x, SearchOptions())) for x in (Setting(), *others)}) == 3
     more = replace(search, search_options=replace(search.search_options, effort=Effort(1)))
     assert more.claim.digest() == search.claim.digest()
 

@@ -9,13 +9,13 @@ from typing import Annotated, Any
 import pytest
 from jsonschema import Draft202012Validator
 
+from documents.json_schema import schema_of
 from roadproof.errors import InputError
 from roadproof.evidence.codec import Rule, read
 from roadproof.evidence.codec import write as write_json
 from roadproof.evidence.finding import NO_EVIDENCE as MISSING_EVIDENCE
 from roadproof.evidence.finding import Acceptance, Finding, exit_code, summary
-from roadproof.evidence.json_schema import schema_of
-from roadproof.evidence.specifications import read_beside
+from roadproof.evidence.specifications import load_specs_beside
 from roadproof.evidence.strict import Fields
 from roadproof.library.loading import bundled_library
 from roadproof.verdict import ExitCode
@@ -103,16 +103,16 @@ def named(*names: str) -> Fields:
 
 def test_a_file_that_adds_a_definition_is_read(tmp_path: Path) -> None:
     (tmp_path / "more.spec").write_text(MORE, "utf-8")
-    library, paths = read_beside(named("more.spec"), tmp_path, ())
+    library, paths = load_specs_beside(named("more.spec"), tmp_path, ())
     assert "slower" in library.select().definitions
     assert paths == (tmp_path / "more.spec",)
-    library, _ = read_beside(named("more.spec"), tmp_path, paths)  # given on the command line too
+    library, _ = load_specs_beside(named("more.spec"), tmp_path, paths)  # given on the command line too
     assert "slower" in library.select().definitions
 
 
 def test_without_files_there_is_the_library_alone(tmp_path: Path) -> None:
     for data in (None, Fields({}, "index.json"), named()):
-        library, paths = read_beside(data, tmp_path, ())
+        library, paths = load_specs_beside(data, tmp_path, ())
         assert library.select().definitions.keys() == bundled_library().select().definitions.keys()
         assert paths == ()
 
@@ -120,7 +120,7 @@ def test_without_files_there_is_the_library_alone(tmp_path: Path) -> None:
 def test_a_file_that_changes_a_definition_is_refused(tmp_path: Path) -> None:
     (tmp_path / "other.spec").write_text(OTHER, "utf-8")
     with pytest.raises(InputError, match="changes 'danger' of the library"):
-        read_beside(named("other.spec"), tmp_path, ())
+        load_specs_beside(named("other.spec"), tmp_path, ())
 
 
 @pytest.mark.parametrize(
@@ -134,4 +134,4 @@ def test_files_elsewhere_are_refused(name: str, tmp_path: Path) -> None:
     (folder / "below\\more.spec").write_text(MORE, "utf-8")
     os.symlink(tmp_path / "more.spec", folder / "link")
     with pytest.raises(InputError, match=r"specs: (.* is no file in the folder|there is no file)"):
-        read_beside(named(name), folder, ())
+        load_specs_beside(named(name), folder, ())

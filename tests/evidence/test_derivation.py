@@ -20,7 +20,7 @@ from roadproof.evidence.countermodel import Countermodel, Instant, Loop, read_tr
 from roadproof.evidence.derivation import _Derivation, _join
 from roadproof.evidence.finding import NO_EVIDENCE
 from roadproof.evidence.heading import heading
-from roadproof.evidence.periodic import judge_periodic, unrolled
+from roadproof.evidence.periodic import judge_periodic, unroll
 from roadproof.evidence.refutation import fault_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library, bundled_library
@@ -28,10 +28,10 @@ from roadproof.library.specification import Library, Source
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.questions.checking import OTHER_LIBRARY
-from roadproof.questions.data import QUESTION
+from roadproof.questions.question import QUESTION
 from roadproof.semantics.exact import judge
 from roadproof.semantics.exact.truth import from_switches, interval
-from roadproof.world.road import Lanelet, Road, pairs
+from roadproof.world.road import Lanelet, Road, adjacency
 
 STATE_ONLY = ("given", "aheadOf", "dangerLeft", "F (v_lon", "G (s(SV)")  # these need lemmas
 SLOW = "(p U[1,2] q) <-> F[1,1] (p U[0,1] q)"
@@ -269,7 +269,7 @@ def lanelet(name: str, lane: str, low: int, high: int, right: int) -> Lanelet:
     return Lanelet(name, lane, "main", "main", s, d)
 
 
-ROAD = Road("r", (lanelet("a", "L", 0, 50, 0), lanelet("b", "K", 0, 50, 3)), pairs([("L", "K")]))
+ROAD = Road("r", (lanelet("a", "L", 0, 50, 0), lanelet("b", "K", 0, 50, 3)), adjacency([("L", "K")]))
 STATE = {name: number(x) for name, x in {"s(SV)": 9, "d(SV)": 2, "v_lon(SV)": 5, "v": 5}.items()}
 STATE |= {"length(SV)": number(4), "width(SV)": number(2)}
 FASTER = STATE | {"v_lon(SV)": number(6)}
@@ -286,7 +286,7 @@ def fault(found: Countermodel) -> str | None:
 
 
 def with_road(*lanelets: Lanelet, beside: tuple[tuple[str, str], ...] = ()) -> Countermodel:
-    return replace(FOUND, road=Road("r", lanelets, pairs(beside)))
+    return replace(FOUND, road=Road("r", lanelets, adjacency(beside)))
 
 
 def with_first(**values: int) -> Countermodel:
@@ -304,7 +304,7 @@ def test_a_countermodel():
         (replace(FOUND, parameters={"minSafe": number(-1)}), "declared minSafe >= 0"),
         (replace(FOUND, parameters={"minSafe": number(1)}), "true on it"),
         (replace(FOUND, parameters={}), "still holds a parameter"),
-        (replace(FOUND, held="after"), "true on it"),
+        (replace(FOUND, interpolation="after"), "true on it"),
         (replace(FOUND, instants=FOUND.instants[1:]), "ascend from 0"),
         (replace(FOUND, instants=FOUND.instants[::-1]), "ascend from 0"),
         (replace(FOUND, instants=()), "ascend from 0"),
@@ -379,7 +379,7 @@ def test_as_the_ordinary_judge_on_the_trace_written_out(seed):
     times = [x for x in (Fraction(k, 2) for k in range(8)) if x < loop.end]
     given = {atom: truths(random, times) for atom in ATOMS}
     asked = formula(random, 2)
-    written_out = {atom: unrolled(truth, loop, Fraction(60)) for atom, truth in given.items()}
+    written_out = {atom: unroll(truth, loop, Fraction(60)) for atom, truth in given.items()}
     expected = judge(asked, None, written_out).truth(asked)
     found = judge_periodic(asked, given, loop)
     points = [Fraction(k, 4) for k in range(int(4 * loop.end))]

@@ -27,8 +27,8 @@ from roadproof.evidence.checking import Checker
 from roadproof.evidence.finding import Acceptance
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.questions.data import QUESTION
-from roadproof.runtime.package_data import shipped
+from roadproof.questions.question import QUESTION
+from roadproof.runtime.package_data import shipped_folder
 from roadproof.verdict import ExitCode
 
 
@@ -332,7 +332,7 @@ def test_a_folder_without_a_question_is_its_files(folder: Path) -> None:
         path.unlink()
     with pytest.raises(InputError, match=r"holds no \.json file"):
         check(folder)
-    (folder / "P2-base.json").symlink_to(shipped("proofs") / "P2-base.json")
+    (folder / "P2-base.json").symlink_to(shipped_folder("proofs") / "P2-base.json")
     assert [x.outcome for x in check(folder)] == [Acceptance.REJECTED]
 
 

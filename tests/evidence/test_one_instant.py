@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from examples import some
 from proving.claims import holds, specification
-from roadproof.engines.solve.smt import ask
+from roadproof.engines.solve.smt import check_sat
 from roadproof.errors import InputError
 from roadproof.evidence import atoms as atoms_module
 from roadproof.evidence import cases, state
@@ -75,12 +75,12 @@ def text_agrees(formula, at) -> bool:
     """Whether z3 finds the formula true at the values exactly where it is."""
     lines = state.declarations([formula], POSITIVE)
     fixed = [
-        f"(assert (= {name} {state.rational(value)}))"
+        f"(assert (= {name} {state.smt_rational(value)}))"
         for name, value in at.items()
         if any(f" {name} " in line for line in lines)
     ]
     script = "\n".join([*lines, *fixed, f"(assert {state.state(formula)})", "(check-sat)"])
-    return ask(script) == ("sat" if holds(formula, at) else "unsat")
+    return check_sat(script) == ("sat" if holds(formula, at) else "unsat")
 
 
 def cases_agree(parts, at) -> bool:
@@ -212,7 +212,9 @@ def lemma_answers(claim: str) -> set[str]:
     named = known.abstract(read_claim(specification(), claim).formula)
     literals = [(part.name, True) for part in f.subformulas(named) if isinstance(part, f.Application)]
     bounds = {name: p.bound for name, p in specification().library.parameters.items()}
-    return {ask(query, meter=Effort(5).meter()) for query in derive_lemma_queries(known, literals, bounds)}
+    return {
+        check_sat(query, meter=Effort(5).meter()) for query in derive_lemma_queries(known, literals, bounds)
+    }
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from itertools import combinations
 from typing import Any
 
 from findings.figures import WORDS, Outcome
-from roadproof.questions.views import folder_data
+from roadproof.extensions.assurance.folder_view import folder_data
 
 US101 = "out/us101"
 

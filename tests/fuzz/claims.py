@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from fuzz.case import Disagreement
 from proving.claims import PROVED, is_false_on, settle, specification
 from proving.test_claims import claims, is_true_on, traces
-from roadproof.engines.solve.smt import ask
-from roadproof.evidence.certificate import refusal
+from rejection import rejection_reason
+from roadproof.engines.solve.smt import check_sat
 from roadproof.verdict import Verdict
 
 TRACES = 40  # for each claim
@@ -29,7 +29,7 @@ def check(case: tuple[str, list[dict]]) -> int:
     result = settle(claim, units=UNITS)
     notes[str(result.verdict)] += 1
     if result.verdict in PROVED:
-        if refusal(result.certificate, specification().library, ask) is not None:
+        if rejection_reason(result.certificate, specification().library, check_sat) is not None:
             raise Disagreement("PROVED with a certificate that is refused", (claim, []))
         for trace in tried:
             if not is_true_on(claim, trace):

@@ -16,7 +16,7 @@ from fuzz.definition import DT, Held, definition_of
 from logic.test_show import canonical
 from roadproof.engines.encode.problem import evaluate
 from roadproof.engines.encode.unroll import Grid, unroll
-from roadproof.extensions.traffic.evaluate.recursive import Trace, TraceReader
+from roadproof.extensions.traffic.evaluate.recursive import SampledTrace, TraceReader
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
@@ -260,9 +260,9 @@ def _signal(name: str) -> t.Signal:
     return t.Signal(*_split(name))
 
 
-def _recorded(trace: Held) -> Trace:
+def _recorded(trace: Held) -> SampledTrace:
     signals = {_split(name): [float(v) for v in values] for name, values in trace.signals.items()}
-    return Trace(DT, trace.samples, signals, {_split(n): float(v) for n, v in trace.sizes.items()})
+    return SampledTrace(DT, trace.samples, signals, {_split(n): float(v) for n, v in trace.sizes.items()})
 
 
 def _batch(traces: list[Held]) -> Batch:

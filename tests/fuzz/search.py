@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from fuzz.case import Disagreement
 from judge.pinning import disagreement_on_drive
-from roadproof.engines.search.question import SearchOptions
 from roadproof.engines.search.search import find_witness, show_none
+from roadproof.engines.setting import SearchOptions
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
@@ -34,14 +34,14 @@ def check(case: tuple[int, str]) -> int:
     question = there.question()
     search_options = SearchOptions("any", engine=engine, effort=Effort(UNITS), refinements=1, explain=False)
     answer = find_witness(question, search_options)
-    if answer.found is None:
+    if answer.witness is None:
         answer = show_none(question, replace(search_options, explain=True))
     notes[str(answer.verdict)] += 1
     if answer.verdict in (Verdict.NONE_WITHIN, Verdict.IMPOSSIBLE):
         raise Disagreement(f"{answer.verdict} of a drive that is known, on {there.road}: {there.text}", case)
-    if answer.found is None:
+    if answer.witness is None:
         return 0
-    found = answer.found
+    found = answer.witness
     problems = (
         "" if judge(found.formula, found.drive).holds else "judged none",
         first_breach(found.drive, question.vehicles, None) or "",

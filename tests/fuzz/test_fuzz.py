@@ -18,8 +18,8 @@ from roadproof.extensions.kernel.printer import Printer
 from roadproof.logic import formula as f
 from roadproof.logic import show
 from roadproof.logic import terms as t
-from roadproof.semantics.exact import exact, signals, truth
-from roadproof.semantics.sampled import semantics
+from roadproof.semantics.exact import judging, signals, truth
+from roadproof.semantics.sampled import lattice
 
 FOUND = sorted(case.FOUND.glob("*.txt"))
 FEW = {"held": 160, "truths": 10, "drives": 25, "claims": 80, "search": 2, "texts": 25}
@@ -62,15 +62,15 @@ def full_square(name, x):
     return TRUE_COURSE(name, doubled)
 
 
-TRUE_COURSE = signals.course
+TRUE_COURSE = signals.signal_polynomial
 STRICT = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 FAULTS = {
-    "held: until asks for its left side too early": (held, exact, "until", classic_until),
-    "held: not keeps the view": (held, semantics, "OPPOSITE", {view: view for view in semantics.View}),
+    "held: until asks for its left side too early": (held, judging, "until", classic_until),
+    "held: not keeps the view": (held, lattice, "OPPOSITE", {view: view for view in lattice.View}),
     "held: strictness is lost": (held, unroll, "NEGATED", STRICT),
-    "truths: until asks for its left side too early": (truths, exact, "until", classic_until),
-    "drives: a square too large": (drives, signals, "course", full_square),
-    "claims: or is and": (claims, exact, "union", truth.intersection),
+    "truths: until asks for its left side too early": (truths, judging, "until", classic_until),
+    "drives: a square too large": (drives, signals, "signal_polynomial", full_square),
+    "claims: or is and": (claims, judging, "union", truth.intersection),
     "texts: a difference binds like a product": (texts, show, "_LEVEL", {**show._LEVEL, "-": show.PRODUCT}),
     "search: all starts are at 0": (search, question, "starting_range", lambda *_: None),
 }
@@ -99,7 +99,7 @@ def test_coq_notices_faults_of_printer_and_judge(monkeypatch: pytest.MonkeyPatch
     later = f.Interval(*[t.Number(held.DT, held.SECONDS)] * 2)
     one = [(f.Until(f.Compare(t.Size("width", "SV"), "<", t.number(0)), later, f.TRUE), [trace])]
     assert steps.check(one) == 1
-    monkeypatch.setattr(exact, "until", classic_until)
+    monkeypatch.setattr(judging, "until", classic_until)
     with pytest.raises(case.Disagreement, match="Coq says true, the judge False"):
         steps.check(one)
     monkeypatch.undo()

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 from judge.reference import FloatDrive, Reference, critical_times, distinct
 from roadproof.logic import formula as f
-from roadproof.semantics.exact import exact
+from roadproof.semantics.exact import judging
 from roadproof.semantics.exact.algebraic import bounds
 
 
@@ -12,7 +12,7 @@ def disagreement_on_sets(formula, given):
     """A sub-formula and instant on which the judge is not what the definition says, or None. Exact."""
     critical = sorted(critical_times(formula, lambda atom: [c.point for c in given[atom].cuts]))
     reference = Reference(lambda atom, time: given[atom].at(time), critical)
-    judgement = exact.judge(formula, None, given)
+    judgement = judging.judge(formula, None, given)
     for part in f.subformulas(formula):
         truth = judgement.truth(part)
         for region in reference.regions:
@@ -35,7 +35,7 @@ def disagreement_on_drive(formula, drive, epsilon=1e-6):
     expected = {p: [reference.holds(p, r) for r in reference.regions] for p in f.subformulas(formula)}
     if doubtful or floats.doubtful:
         return "doubtful"
-    judgement = exact.judge(formula, drive)
+    judgement = judging.judge(formula, drive)
     points = {cut.point for truth in judgement.truths.values() for cut in truth.cuts}
     for part, truths in expected.items():
         truth = judgement.truth(part)

@@ -23,19 +23,21 @@ from judge.cases import (
 from judge.pinning import disagreement_on_drive, disagreement_on_sets
 from planting import plant
 from roadproof.errors import InputError, UsageError
+from roadproof.extensions.drivers import judging as restricted
+from roadproof.extensions.drivers.judging import truth_within
 from roadproof.extensions.drivers.manoeuvres import CUT_IN, along_line
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.semantics.exact import exact
+from roadproof.semantics.exact import judging
 from roadproof.semantics.exact.algebraic import real_roots
-from roadproof.semantics.exact.exact import DriveJudge, LazyJudge, judge, truth_within
+from roadproof.semantics.exact.judging import DriveJudge, LazyJudge, judge
 from roadproof.semantics.exact.signals import AbstractSignals, DriveSignals
 from roadproof.semantics.exact.truth import ALWAYS, NEVER, intersection, interval, union
 from roadproof.world.drive import Drive, Motion, Piece
-from roadproof.world.road import Lanelet, Road, pairs
+from roadproof.world.road import Lanelet, Road, adjacency
 from tables import read_table
 
 LIBRARY = bundled_library()
@@ -45,7 +47,7 @@ ROAD = Road(
         Lanelet("m1", "main-1", "main", "main", (None, None), (Fraction(0), Fraction(7, 2))),
         Lanelet("m2", "main-2", "main", "main", (None, None), (Fraction(7, 2), Fraction(7))),
     ),
-    pairs([("main-1", "main-2")]),
+    adjacency([("main-1", "main-2")]),
 )
 SQRT2 = real_roots((-2, 0, 1))[1][0]
 
@@ -400,7 +402,7 @@ def test_parts_that_are_shared_or_left_out_change_no_verdict(wanted, drive):
 )
 def test_faults_of_shared_judging_are_noticed(monkeypatch, name, right, wrong):
     owner, _, method = name.partition(".")
-    plant(monkeypatch, getattr(exact, owner), method, right, wrong)
+    plant(monkeypatch, getattr(judging, owner), method, right, wrong)
     cases = st.tuples(several, jerk_drives)
     assert find(cases, lambda case: shared_disagreement(*case) is not None, settings=search)
 
@@ -426,7 +428,7 @@ many = settings(max_examples=some(300), deadline=None, derandomize=True)
 def both(formula, drive, pair):
     signals = DriveSignals(drive)
     whole = judge(formula, signals).truth(formula)
-    return exact.truth_within(formula, signals, *pair), intersection([whole, interval(*pair)])
+    return truth_within(formula, signals, *pair), intersection([whole, interval(*pair)])
 
 
 @many
@@ -458,7 +460,8 @@ def test_planted_faults_are_noticed(monkeypatch, name, right, wrong):
         said, expected = both(*case)
         return said != expected
 
-    plant(monkeypatch, getattr(exact, owner), method, right, wrong)
+    home = judging if hasattr(judging, owner) else restricted
+    plant(monkeypatch, getattr(home, owner), method, right, wrong)
     assert find(st.tuples(cases, jerk_drives, ends), differ, settings=settings(search, max_examples=400))
 
 

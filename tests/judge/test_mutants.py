@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from judge.cases import comparisons, drives, every_small_case, jerk_comparisons, jerk_drives
 from judge.pinning import disagreement_on_drive, disagreement_on_sets
-from roadproof.semantics.exact import exact, piecewise, signals, truth
+from roadproof.semantics.exact import judging, piecewise, signals, truth
 from roadproof.semantics.exact.algebraic import moved
 from roadproof.semantics.exact.polynomial import polynomial
 from roadproof.semantics.exact.truth import Cut, Span, TruthSet, complement, eventually, intersection, union
@@ -23,8 +23,8 @@ search = settings(
     phases=[Phase.generate],
     suppress_health_check=list(HealthCheck),
 )
-real_until, real_reaching = truth.until, truth._reaching
-real_signs, real_course, real_starts = piecewise._signs, signals.course, signals.starts_of
+real_until, real_reaching = truth.until, truth._shifted_back
+real_signs, real_course, real_starts = piecewise._signs, signals.signal_polynomial, signals.piece_starts
 
 
 def classic_until(left, low, high, right):
@@ -82,23 +82,23 @@ def weak_always(low, high, body):
     """Looks at the closed window's inside only."""
     opened = TruthSet(tuple(complement(body).cuts))
     spans = [s for s in opened.spans() if s.end is None or s.begin.point != s.end.point]
-    return complement(union([eventually(low, high, truth._covered([s], 1)) for s in spans]))
+    return complement(union([eventually(low, high, truth._overlapped([s], 1)) for s in spans]))
 
 
 @pytest.mark.parametrize(
     ("module", "name", "fault"),
     [
-        (exact, "until", classic_until),
-        (exact, "until", greedy_until),
-        (exact, "until", until_that_needs_no_left),
-        (exact, "until", until_that_forgets_the_end),
-        (exact, "until", unclipped_until),
-        (truth, "_reaching", open_reach),
-        (truth, "_reaching", backward_reach),
-        (truth, "_reaching", short_reach),
-        (exact, "always", weak_always),
-        (exact, "intersection", union),
-        (exact, "complement", lambda body: TruthSet(body.cuts[1:] or (truth.START,))),
+        (judging, "until", classic_until),
+        (judging, "until", greedy_until),
+        (judging, "until", until_that_needs_no_left),
+        (judging, "until", until_that_forgets_the_end),
+        (judging, "until", unclipped_until),
+        (truth, "_shifted_back", open_reach),
+        (truth, "_shifted_back", backward_reach),
+        (truth, "_shifted_back", short_reach),
+        (judging, "always", weak_always),
+        (judging, "intersection", union),
+        (judging, "complement", lambda body: TruthSet(body.cuts[1:] or (truth.START,))),
     ],
     ids=lambda x: getattr(x, "__name__", None) if callable(x) else "",
 )
@@ -174,8 +174,8 @@ def left_continuous(motion):
         (piecewise, "_signs", open_roots),
         (piecewise, "_signs", crossing_tangents),
         (piecewise, "_signs", roots_at_the_end),
-        (signals, "course", full_square),
-        (signals, "starts_of", left_continuous),
+        (signals, "signal_polynomial", full_square),
+        (signals, "piece_starts", left_continuous),
         (piecewise, "greatest", piecewise.least),
         (signals, "TRUE_SIGNS", {**signals.TRUE_SIGNS, ">=": frozenset({1})}),
         (signals, "MIRRORED", {op: op for op in signals.MIRRORED}),
@@ -194,11 +194,11 @@ def test_a_faulty_comparison_is_noticed(monkeypatch, module, name, fault):
 @pytest.mark.parametrize(
     ("name", "fault"),
     [
-        ("course", half_cube),
-        ("course", full_jerk),
-        ("course", no_jerk),
+        ("signal_polynomial", half_cube),
+        ("signal_polynomial", full_jerk),
+        ("signal_polynomial", no_jerk),
         ("_from", absolute_times),
-        ("starts_of", loose_jerk),
+        ("piece_starts", loose_jerk),
     ],
     ids=lambda x: getattr(x, "__name__", None) if callable(x) else "",
 )

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from examples import some
 from planting import plant
 from roadproof.semantics.exact import polynomial as module
-from roadproof.semantics.exact.algebraic import Root, approximate, bounds, compare, decimal, moved, real_roots
+from roadproof.semantics.exact.algebraic import Root, as_float, bounds, compare, decimal, moved, real_roots
 from roadproof.semantics.exact.polynomial import (
     ONE,
     ZERO,
-    Polynomial,
+    TimePolynomial,
     add,
     is_rootless,
     multiply,
@@ -48,13 +48,13 @@ numerators = (
 )
 
 
-def value(p: Polynomial, x: Fraction) -> Fraction:
+def value(p: TimePolynomial, x: Fraction) -> Fraction:
     return sum((n * x**i for i, n in enumerate(p.numerators)), Fraction(0)) / p.denominator
 
 
 @quiet
 @given(polynomials, polynomials, fractions)
-def test_operations_are_those_of_their_values(p: Polynomial, q: Polynomial, x: Fraction) -> None:
+def test_operations_are_those_of_their_values(p: TimePolynomial, q: TimePolynomial, x: Fraction) -> None:
     assert value(add(p, q), x) == value(p, x) + value(q, x)
     assert value(multiply(p, q), x) == value(p, x) * value(q, x)
     assert value(negate(p), x) == -value(p, x)
@@ -62,7 +62,7 @@ def test_operations_are_those_of_their_values(p: Polynomial, q: Polynomial, x: F
 
 @quiet
 @given(polynomials)
-def test_equal_polynomials_look_alike(p: Polynomial) -> None:
+def test_equal_polynomials_look_alike(p: TimePolynomial) -> None:
     twice = add(p, p)
     assert multiply(twice, polynomial(Fraction(1, 2))) == p
     assert add(p, negate(p)) == multiply(p, ZERO) == ZERO
@@ -72,7 +72,7 @@ def test_equal_polynomials_look_alike(p: Polynomial) -> None:
 @quiet
 @given(numerators, fractions)
 def test_the_sign_at_a_point(found: tuple[int, ...], x: Fraction) -> None:
-    exact = value(Polynomial(found, 1), x)
+    exact = value(TimePolynomial(found, 1), x)
     assert sign_at(found, x) == (exact > 0) - (exact < 0)
 
 
@@ -272,8 +272,8 @@ def test_decimal_of_a_root_keeps_its_bound():
 
 
 def test_floats_for_pictures():
-    assert approximate(square_root(2)) == pytest.approx(2**0.5, abs=1e-15)
-    assert approximate(Fraction(3, 4)) == 0.75
+    assert as_float(square_root(2)) == pytest.approx(2**0.5, abs=1e-15)
+    assert as_float(Fraction(3, 4)) == 0.75
 
 
 # --- Written-out cases of the operators on truth sets: ends, windows, until -------------------------

@@ -10,8 +10,8 @@ import pytest
 
 from judge.test_exact import motion
 from planting import plant
-from roadproof.engines.encode.build import NONE, ground
-from roadproof.engines.encode.motion import Layout, own_columns
+from roadproof.engines.encode.build import NO_MARGIN, ground_atoms
+from roadproof.engines.encode.motion import ColumnLayout, custom_signal_ranges
 from roadproof.engines.encode.problem import evaluate
 from roadproof.engines.encode.unroll import Grid, unroll
 from roadproof.engines.prove.prover import prove
@@ -29,11 +29,12 @@ from roadproof.library.specification import Source
 from roadproof.logic import formula as f
 from roadproof.logic.custom_names import code_of
 from roadproof.logic.formula import Formula, subformulas
+from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import without_names
-from roadproof.logic.show import as_syntax, text
+from roadproof.logic.show import text
 from roadproof.semantics.exact import replay
 from roadproof.semantics.exact.algebraic import real_roots
-from roadproof.semantics.exact.exact import Judgement, judge, seconds
+from roadproof.semantics.exact.judging import Judgement, interval_seconds, judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.semantics.exact.truth import (
     NEVER,
@@ -247,12 +248,12 @@ def possible(judgement: Judgement, known: Blame, formula: Formula) -> tuple[Trut
         case f.Eventually(interval, body) | f.Always(interval, body):
             reach = eventually if isinstance(formula, f.Eventually) else always
             least, most = possible(judgement, known, body)
-            return reach(*seconds(interval), least), reach(*seconds(interval), most)
+            return reach(*interval_seconds(interval), least), reach(*interval_seconds(interval), most)
         case f.Until(left, interval, right):
             first, then = possible(judgement, known, left), possible(judgement, known, right)
             return (
-                until(first[0], *seconds(interval), then[0]),
-                until(first[1], *seconds(interval), then[1]),
+                until(first[0], *interval_seconds(interval), then[0]),
+                until(first[1], *interval_seconds(interval), then[1]),
             )
     raise AssertionError(formula)
 
@@ -296,7 +297,7 @@ def test_only_judged_parts_are_explained() -> None:
         blame(judgement, f.TRUE)
 
 
-# --- Own signals and kinds of vehicles: all readers agree, on random formulas and random courses ----
+# --- Custom signals and kinds of vehicles: all readers agree, on random formulas and random courses ----
 
 DT, STEPS, TAIL = Fraction(1, 2), 5, 12
 VEHICLES = ("SV", "POV")
@@ -317,7 +318,7 @@ OWN = load_library(
 
 
 def written(dice: Random, depth: int) -> str:
-    """A random formula about own signals and kinds, without operators that never end."""
+    """A random formula about custom signals and kinds, without operators that never end."""
     if depth == 0:
         a = dice.choice(VEHICLES)
         return dice.choice(
@@ -348,7 +349,7 @@ def written(dice: Random, depth: int) -> str:
 
 
 def random_drive(dice: Random) -> Drive:
-    """Two vehicles of some kind, own signals that are small whole numbers and change at samples."""
+    """Two vehicles of some kind, custom signals that are small whole numbers and change at samples."""
     still = (Piece(None, Fraction(0), Fraction(0)),)
     box = (Fraction(4), Fraction(2), Fraction(0), Fraction(3), Fraction(10), Fraction(0))
     signals = {("red", ""): (0, 1), **{(name, v): (-4, 4) for name in ("jerk", "gap") for v in VEHICLES}}
@@ -362,12 +363,12 @@ def random_drive(dice: Random) -> Drive:
 
 
 def values_at(drive: Drive, step: int) -> dict[tuple[str, str], Fraction]:
-    return {key: course[min(step, STEPS)][1] for key, course in drive.own.items()}
+    return {key: course[min(step, STEPS)][1] for key, course in drive.custom_signals.items()}
 
 
 def batch_of(drive: Drive) -> Batch:
     samples = [values_at(drive, k) for k in range(STEPS + TAIL)]
-    signals = {key: np.array([float(x[key]) for x in samples])[:, None] for key in drive.own}
+    signals = {key: np.array([float(x[key]) for x in samples])[:, None] for key in drive.custom_signals}
     kinds = {("kind", v): np.array([float(code_of(m.kind))]) for v, m in drive.vehicles.items() if m.kind}
     return Batch(DT, np.array([STEPS + TAIL]), signals, kinds)
 
@@ -375,13 +376,15 @@ def batch_of(drive: Drive) -> Batch:
 def encoded(formula: Formula, drive: Drive) -> bool:
     vehicles = {v: load_vehicle("car") for v in VEHICLES}
     vehicles = {v: type(x)(**{**vars(x), "kind": drive.vehicles[v].kind}) for v, x in vehicles.items()}
-    layout = Layout(VEHICLES, Grid(DT, STEPS), own_columns(formula))
+    layout = ColumnLayout(VEHICLES, Grid(DT, STEPS), custom_signal_ranges(formula))
     columns = {}
-    for own in layout.own:
+    for own in layout.custom_signals:
         for k in range(STEPS + 1):
             key = own.signal.name, own.signal.vehicle
-            columns[layout.own_column(key[1], key[0], k)] = values_at(drive, k)[key]
-    circuit = ground(unroll(formula, layout.grid), vehicles, layout, NONE, lasting=False)
+            columns[layout.custom_signal_column(key[1], key[0], k)] = values_at(drive, k)[key]
+    circuit = ground_atoms(
+        unroll(formula, layout.grid), vehicles, layout, NO_MARGIN, last_sample_persists=False
+    )
 
     def holds(inequality) -> bool:
         value = inequality.polynomial.value(columns.__getitem__)
@@ -434,12 +437,12 @@ def test_what_is_proved_is_true_on_drives_and_the_opposite_of_what_is_refuted(se
 
 def test_columns_are_looked_up_where_they_stand() -> None:
     formula = read_claim(OWN, "red and jerk(SV) > 0 and gap(POV) < gap(SV)").formula
-    layout = Layout(VEHICLES, Grid(DT, STEPS), own_columns(formula))
+    layout = ColumnLayout(VEHICLES, Grid(DT, STEPS), custom_signal_ranges(formula))
     first = len(VEHICLES) * len(STARTING) * (STEPS + 1)
-    columns = list(layout.own_unknowns())
-    for own in layout.own:
+    columns = list(layout.custom_signal_unknowns())
+    for own in layout.custom_signals:
         for k in range(STEPS + 1):
-            place = layout.own_column(own.signal.vehicle, own.signal.name, k) - first
+            place = layout.custom_signal_column(own.signal.vehicle, own.signal.name, k) - first
             of = columns[place].of
             assert (of.vehicle, of.signal, of.step) == (own.signal.vehicle, own.signal.name, k)
             assert (columns[place].low, columns[place].high) == own.range

@@ -13,17 +13,18 @@ from judge.cases import comparisons, drives, formulas, jerk_drives, operators
 from judge.test_exact import alone, bound, motion, random_drive, truth
 from planting import plant
 from roadproof.errors import InputError, UsageError
+from roadproof.extensions.traffic.evaluate import robust
+from roadproof.extensions.traffic.evaluate.robust import robustness
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import boxes_overlap
 from roadproof.logic.rewrite import bounds_of
-from roadproof.semantics.exact import algebraic, exact, piecewise, robust, signals
+from roadproof.semantics.exact import algebraic, judging, piecewise, samples, signals
 from roadproof.semantics.exact.algebraic import bounds, real_roots
-from roadproof.semantics.exact.exact import judge
-from roadproof.semantics.exact.robust import robustness
-from roadproof.semantics.exact.signals import Courses, DriveSignals
+from roadproof.semantics.exact.judging import judge
+from roadproof.semantics.exact.signals import DriveSignals, TermPieces
 from roadproof.world.drive import Drive
-from roadproof.world.motion import starts_of, state_at
+from roadproof.world.motion import piece_starts, state_at
 from roadproof.world.signals import SIGNALS
 
 HALF, SECOND = Fraction(1, 2), Fraction(1)
@@ -183,8 +184,8 @@ def test_a_scenario_in_robust_form_agrees_in_sign_with_the_judge():
 
 def test_values_are_rounded_once():
     third = t.Quotient(t.Signal("s", "A"), t.number(3))
-    pieces = Courses(DriveSignals(alone(v_lon=Fraction(1, 7)))).of(third)
-    assert list(robust._sample(pieces, Fraction(1, 10), 4)) == [k / 210 for k in range(4)]
+    pieces = TermPieces(DriveSignals(alone(v_lon=Fraction(1, 7)))).of(third)
+    assert list(samples._sample(pieces, Fraction(1, 10), 4)) == [k / 210 for k in range(4)]
 
 
 @pytest.mark.parametrize(
@@ -229,7 +230,8 @@ FAULTS = {
     "_difference": reversed_difference,
     "_fold": always_or,
 }
-real = {name: getattr(robust, name) for name in FAULTS}
+homes = {name: samples if name == "_difference" else robust for name in FAULTS}
+real = {name: getattr(home, name) for name, home in homes.items()}
 
 
 @pytest.mark.parametrize("name", FAULTS)
@@ -245,7 +247,7 @@ def test_a_planted_fault_is_noticed(monkeypatch, name):
         return list(found.margins[formula]) == [naive.margin(formula, k) for k in range(7)]
 
     assert all(map(agrees, cases))
-    monkeypatch.setattr(robust, name, FAULTS[name])
+    monkeypatch.setattr(homes[name], name, FAULTS[name])
     assert not all(map(agrees, cases))
 
 
@@ -293,9 +295,9 @@ def value(term, drive, time):
 
 def disagreement(compare, drive):
     """An instant at which the judge says otherwise than the values, near its switches too; or None."""
-    found = exact.judge(compare, drive).truth(compare)
+    found = judging.judge(compare, drive).truth(compare)
     switches = [bounds(cut.point, Fraction(1, 10**9)) for cut in found.cuts]
-    knots = [x.time for motion in drive.vehicles.values() for x in starts_of(motion)]
+    knots = [x.time for motion in drive.vehicles.values() for x in piece_starts(motion)]
     for time in {*TIMES, *knots, *(x for pair in switches for x in pair)}:
         said = HOLDS[compare.op](value(compare.left, drive, time), value(compare.right, drive, time))
         if time >= 0 and found.at(time) != said:
@@ -315,7 +317,7 @@ SMOOTH = Drive({"A": motion(0, 2, pieces=[(3, 0, 0, 1)]), "B": motion(3, 2, 1)})
 
 def test_a_square_of_a_cubic_is_a_sextic():
     """t⁶/36 >= 2 from the sixth root of 72 on, which is 2.039648903 s; then s is 9/2 + 9/2·(t - 3)."""
-    found = exact.judge(SIX, SMOOTH).truth(SIX)
+    found = judging.judge(SIX, SMOOTH).truth(SIX)
     assert str(found) == "[2.039649 ± 0.000001, ∞)"
     (cut,) = found.cuts
     assert cut.point == real_roots((-72, 0, 0, 0, 0, 0, 1))[1][0]
@@ -325,9 +327,9 @@ def test_a_square_of_a_cubic_is_a_sextic():
 @pytest.mark.parametrize(
     ("owner", "name", "right", "wrong"),
     [
-        (signals, "_from", "found[k] -= begin", "found[k] += begin"),
-        (signals, "_from", "range(len(found) - 1)", "range(min(2, len(found) - 1))"),
-        (algebraic, "_roots_by_factoring", "found.append((Root(polynomial, *ends), multiplicity))", "break"),
+        (signals, "_from", "shifted[k] -= begin", "shifted[k] += begin"),
+        (signals, "_from", "range(len(shifted) - 1)", "range(min(2, len(shifted) - 1))"),
+        (algebraic, "_roots_by_factoring", "roots.append((Root(polynomial, *ends), multiplicity))", "break"),
         (algebraic, "_roots_by_factoring", "(point, multiplicity) for", "(point, 2 * multiplicity) for"),
         (
             algebraic,
@@ -368,7 +370,7 @@ def forget():
 @given(jerk_drives)
 def test_boxes_overlap_where_corners_say_so(drive):
     overlap = boxes_overlap("A", "B")
-    found = exact.judge(overlap, drive).truth(overlap)
+    found = judging.judge(overlap, drive).truth(overlap)
     a, b = drive.vehicles["A"], drive.vehicles["B"]
     for time in TIMES:
         x, y = state_at(a, time), state_at(b, time)
@@ -410,7 +412,7 @@ def test_scenarios_switch_where_their_atoms_do(scenario):
     )
     formula = bound(f"scenario_{scenario}(SV, POV, L)", "ext")
     for part in {x for x in f.subformulas(formula) if isinstance(x, f.Compare)}:
-        found = exact.judge(part, drive).truth(part)
+        found = judging.judge(part, drive).truth(part)
         points = [bounds(cut.point, Fraction(1, 10**9)) for cut in found.cuts]
         inside = [Fraction(0), *(x for pair in points for x in pair), Fraction(50)]
         for low, high in pairwise(inside):

@@ -11,8 +11,8 @@ from roadproof.frontends.cli.main import main
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library, load_library
-from roadproof.logic.first_instant import first_instants, told_first_instants
-from roadproof.semantics.exact.exact import judge
+from roadproof.logic.first_instant import first_instant_warnings, first_instants
+from roadproof.semantics.exact.judging import judge
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
 from roadproof.world.motion import state_at
@@ -47,20 +47,20 @@ SILENT = (
 
 @pytest.mark.parametrize("text", ASKING)
 def test_what_asks_for_a_first_instant_is_told(text):
-    (told,) = told_first_instants(read_claim(HOME, text).formula)
+    (told,) = first_instant_warnings(read_claim(HOME, text).formula)
     assert "docs/explanation/entering.md" in told
 
 
 @pytest.mark.parametrize("text", SILENT)
 def test_all_else_is_not(text):
-    assert not told_first_instants(read_claim(HOME, text).formula)
+    assert not first_instant_warnings(read_claim(HOME, text).formula)
 
 
 def test_no_scenario_asks_for_one():
     for name in ("base", "ext", "extA"):
         home = rp.load(name)
         for number in range(1, 25):
-            assert not told_first_instants(home.read(number).formula)
+            assert not first_instant_warnings(home.read(number).formula)
 
 
 def lane_change(rng):

@@ -9,16 +9,22 @@ from hypothesis import strategies as st
 
 from examples import some
 from judge.cases import comparisons_of, drives, formulas
+from roadproof.extensions.traffic.evaluate.horizon import horizon
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import FALSE, TRUE, Compare, Formula
-from roadproof.logic.initial_conditions import compared, conjuncts, demands, narrowed, pins
+from roadproof.logic.initial_conditions import (
+    comparisons_at_start,
+    forced_values,
+    necessary_at_start,
+    top_level_conjuncts,
+    without_comparisons,
+)
 from roadproof.logic.rewrite import (
     bounds_of,
-    horizon,
     map_terms,
     parameters_of,
     signal_degree,
@@ -27,7 +33,7 @@ from roadproof.logic.rewrite import (
     with_values,
     without_names,
 )
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from tables import read_table
 
 SECONDS = (0, 1)
@@ -245,7 +251,7 @@ HERE = Fraction(3, 5)
 
 
 def pinned(claim: str) -> dict[str, Fraction]:
-    return pins(read_claim(specification, claim).formula)
+    return forced_values(read_claim(specification, claim).formula)
 
 
 @pytest.mark.parametrize(
@@ -271,7 +277,7 @@ def test_wherever_a_formula_is_false_its_pins_hold():
     for one, other, last in product(texts, repeat=3):
         for shape in ("{} and {} -> {}", "{} -> ({} -> {})", "not ({} or ({} and {}))"):
             made = read_claim(specification, shape.format(one, other, last)).formula
-            found = pins(made)
+            found = forced_values(made)
             for rho, safe in product((0, 1, 2), repeat=2) if found else ():
                 values = {"rho": Fraction(rho), "minSafe": Fraction(safe)}
                 if not truth(with_values(made, values)):
@@ -307,7 +313,7 @@ LATER = f.Interval(t.number(1), t.number(2))
 @settings(max_examples=some(300), deadline=None)
 @given(formulas(ATOMS), drives)
 def test_what_is_demanded_is_so_where_the_formula_is(formula, drive):
-    demanded = demands(formula)
+    demanded = necessary_at_start(formula)
     assert f.is_state(demanded)
     if judge(formula, drive).holds:
         assert judge(demanded, drive).holds
@@ -316,24 +322,24 @@ def test_what_is_demanded_is_so_where_the_formula_is(formula, drive):
 @settings(max_examples=some(100), deadline=None)
 @given(formulas(ATOMS).filter(f.is_state), drives)
 def test_all_of_a_formula_about_one_instant_is_demanded(formula, drive):
-    assert judge(demands(formula), drive).holds == judge(formula, drive).holds
+    assert judge(necessary_at_start(formula), drive).holds == judge(formula, drive).holds
 
 
 def test_no_more_than_the_first_instant_is_read():
     no_q = f.Compare(Q.left, "<=", Q.right)
-    assert demands(f.Always(NOW, P)) == P
-    assert demands(f.Always(LATER, P)) == f.TRUE
-    assert demands(f.Eventually(NOW, P)) == f.TRUE
-    assert demands(f.Not(f.Eventually(NOW, Q))) == no_q
-    assert demands(f.Until(P, NOW, Q)) == f.Or((P, Q))
-    assert demands(f.Not(f.Until(P, NOW, Q))) == no_q
-    assert demands(f.And((f.Application("x", (), P), f.Eventually(NOW, Q)))) == P
+    assert necessary_at_start(f.Always(NOW, P)) == P
+    assert necessary_at_start(f.Always(LATER, P)) == f.TRUE
+    assert necessary_at_start(f.Eventually(NOW, P)) == f.TRUE
+    assert necessary_at_start(f.Not(f.Eventually(NOW, Q))) == no_q
+    assert necessary_at_start(f.Until(P, NOW, Q)) == f.Or((P, Q))
+    assert necessary_at_start(f.Not(f.Until(P, NOW, Q))) == no_q
+    assert necessary_at_start(f.And((f.Application("x", (), P), f.Eventually(NOW, Q)))) == P
 
 
 @settings(max_examples=some(100), deadline=None)
 @given(st.booleans(), formulas(ATOMS), drives)
 def test_parts_together_are_the_formula(positive, formula, drive):
-    whole = f.conjunction(*conjuncts(formula, positive))
+    whole = f.conjunction(*top_level_conjuncts(formula, positive))
     assert judge(whole, drive).holds == (judge(formula, drive).holds == positive)
 
 
@@ -368,13 +374,13 @@ def holds(formula: Formula, true: dict[Formula, bool]) -> bool:
 def test_what_is_left_implies_the_formula_and_does_not_speak_of_it() -> None:
     for formula, values in product(FORMULAS, product((False, True), repeat=3)):
         true: dict[Formula, bool] = dict(zip((A, B, C), values, strict=True))
-        left = narrowed(formula, {A})
-        assert A not in set(compared(left))
+        left = without_comparisons(formula, {A})
+        assert A not in set(comparisons_at_start(left))
         assert not holds(left, true) or holds(formula, true)
 
 
 def test_what_need_not_be_let_go_stays() -> None:
     true: dict[Formula, bool] = {A: True, B: True, C: False}
-    assert holds(narrowed(f.Or((A, B)), {A}), true)
-    assert not holds(narrowed(A, {A}), true)
-    assert narrowed(f.Or((A, B)), {C}) == f.Or((A, B))
+    assert holds(without_comparisons(f.Or((A, B)), {A}), true)
+    assert not holds(without_comparisons(A, {A}), true)
+    assert without_comparisons(f.Or((A, B)), {C}) == f.Or((A, B))

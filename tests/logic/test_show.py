@@ -224,7 +224,7 @@ def test_formulas(text: str, shown: str) -> None:
 PARENTHESES = [
     (r"{_bounds(bounds)} {_show(right, show.UNARY)}", r"{_bounds(bounds)} {_show(right, show.UNTIL)}"),
     (r"\neg {_show(body, show.UNARY)}", r"\neg {_show(body, show.UNTIL)}"),
-    ("{_show(left, show.UNARY)} {until}", "{_show(left, show.UNTIL)} {until}"),
+    ("{_show(left, show.UNARY)} {between}", "{_show(left, show.UNTIL)} {between}"),
     ("{_show(right, show.UNTIL)}", "{_show(right, show.AND)}"),
     (
         "{_range(symbol(variable), domain)}}} {_show(body, show.UNARY)}",

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from roadproof.extensions.kernel.coq import one_at_a_time
 from roadproof.runtime import cache
-from roadproof.runtime.cache import SWITCH, is_ours, private_folder, remembered
+from roadproof.runtime.cache import SWITCH, cached, is_private, private_folder
 
 MODES = [0o700, 0o750, 0o755, 0o770, 0o720, 0o702, 0o707, 0o777]
 
@@ -26,7 +27,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def make(made_of: bytes = b"one") -> int:
     """How often it was made."""
     calls: list[int] = []
-    remembered("thing", made_of, lambda: calls.append(1))
+    cached("thing", made_of, lambda: calls.append(1))
     return len(calls)
 
 
@@ -38,7 +39,7 @@ def test_what_others_may_write_is_no_cache(mode: int, which: str, home: Path) ->
     path = {"folder": home, "the one above": home.parent, "file": entry}[which]
     path.chmod(mode & 0o666 if which == "file" else mode)
     others_write = bool(mode & (stat.S_IWGRP | stat.S_IWOTH))
-    assert is_ours(path) is not others_write
+    assert is_private(path) is not others_write
     if which != "file":
         assert (private_folder("made") is None) is others_write
     assert make() == int(others_write)
@@ -47,7 +48,7 @@ def test_what_others_may_write_is_no_cache(mode: int, which: str, home: Path) ->
 def test_what_belongs_to_another_user_is_no_cache(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert make() == 1
     monkeypatch.setattr(os, "getuid", lambda: home.stat().st_uid + 1)
-    assert not is_ours(home)
+    assert not is_private(home)
     assert make() == 1
 
 
@@ -56,7 +57,7 @@ def test_a_link_to_a_sound_entry_is_no_entry(home: Path, tmp_path: Path) -> None
     [entry] = home.iterdir()
     entry.rename(tmp_path / "elsewhere")
     entry.symlink_to(tmp_path / "elsewhere")
-    assert not is_ours(entry)
+    assert not is_private(entry)
     assert make() == 1
 
 
@@ -89,13 +90,13 @@ def test_what_was_used_last_stays_where_the_cache_is_full(
         path.write_bytes(content)
         os.utime(path, (now - 100 + k, now - 100 + k))
     monkeypatch.setattr(cache, "MOST_BYTES", 2 * len(content))
-    cache.make_room("made")
+    cache.evict_old("made")
     assert {x.name for x in home.iterdir()} == {"entry-2", "entry-3"}
     monkeypatch.setattr(cache, "MOST_BYTES", 2 * len(content) - 1)
-    cache.make_room("made")
+    cache.evict_old("made")
     assert {x.name for x in home.iterdir()} == {"entry-3"}
     monkeypatch.setattr(cache, "_OLD", 60.0)
-    cache.make_room("made")
+    cache.evict_old("made")
     assert not [*home.iterdir()]
 
 
@@ -110,7 +111,7 @@ def test_use_makes_an_entry_young_again(home: Path) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="locks of folders are those of Linux")
 def test_one_process_at_a_time(home: Path) -> None:
-    with cache.one_at_a_time(home):
+    with one_at_a_time(home):
         lock = f"fcntl.flock(os.open({str(home)!r}, os.O_RDONLY), fcntl.LOCK_SH | fcntl.LOCK_NB)"
         code = f"import fcntl, os; {lock}"
         other = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)

@@ -13,47 +13,57 @@ import pytest
 
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError
-from roadproof.evidence.answer import Judged, answer_data, read_answer, undecided
-from roadproof.evidence.certificate import read_certificate_data
+from roadproof.evidence.answer import JudgedTrace, undecided
+from roadproof.evidence.answer_codec import answer_data, read_answer
+from roadproof.evidence.certificate_file import read_certificate_data
 from roadproof.evidence.claim import Claim
-from roadproof.extensions.catalogue.gaps import gap_kinds
-from roadproof.extensions.surveys.coverage.answers import ClassAnswer, Survey
-from roadproof.extensions.surveys.coverage.asking import AGAIN, LOOK, GapRoads, GroupAsking, ask_need, work_of
+from roadproof.evidence.verdict_with_evidence import ProofResult
+from roadproof.extensions.catalogue.gaps import named_gap_classes
+from roadproof.extensions.surveys.composition import in_some_lane
+from roadproof.extensions.surveys.coverage.answers import ClassAnswer, GapSurvey
 from roadproof.extensions.surveys.coverage.claims import GapClaims
 from roadproof.extensions.surveys.coverage.classes import (
     GapClasses,
     GapGroup,
-    Part,
-    caught,
+    ScenarioPart,
+    catch_formula,
     claims_of,
-    exchanged,
+    gap_formula,
     in_either_role,
-    missed,
     near_miss,
     numbers_on,
     sectors_of,
     starts,
+    swap_roles,
 )
-from roadproof.extensions.surveys.coverage.found import FoundGap, SimpleDrives
-from roadproof.extensions.surveys.coverage.looks import (
-    Near,
-    Needing,
+from roadproof.extensions.surveys.coverage.gap_drives import GapDrive, SimpleDrives
+from roadproof.extensions.surveys.coverage.gap_search import (
+    AGAIN,
+    LOOK,
+    GapRoads,
+    GapSearch,
+    ask_need,
+    work_of,
+)
+from roadproof.extensions.surveys.coverage.judges import (
+    NearMiss,
     NeedJudge,
+    NeedJudgement,
     SimpleGap,
     SimpleGaps,
     SimpleJudge,
 )
 from roadproof.extensions.surveys.coverage.question import CoverageQuestion, gaps_of
 from roadproof.extensions.surveys.coverage.simple_drives import simple_drives
-from roadproof.extensions.surveys.extremes.points import Asking
-from roadproof.library.compose import both, either, in_some_lane, negation
+from roadproof.extensions.surveys.extremes.points import ClaimGenerator
+from roadproof.library.compose import both, either, negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import LANE, PAIR
 from roadproof.logic import formula as f
 from roadproof.logic.formula import subformulas
-from roadproof.questions.basis import Basis, ProofResult
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.questions.basis import Basis
+from roadproof.reasons import NO_REASON, Reason, ReasonKind
 from roadproof.runtime.budget import Effort, Work
 from roadproof.semantics.exact.replay import first_overlap
 from roadproof.verdict import Verdict
@@ -103,7 +113,7 @@ def test_a_gap_is_missed_by_all_scenarios_in_either_role() -> None:
     numbers = SECTORS[0]
     assert len(in_either_role(HOME, numbers)) == 2 * len(numbers)
     assert len({x.text for x in in_either_role(HOME, numbers)}) == 2 * len(numbers)
-    said = calls(missed(HOME, numbers).formula)
+    said = calls(gap_formula(HOME, numbers).formula)
     assert len({x for x in said if x[0].startswith("scenario_")}) >= 2 * len(numbers)
 
 
@@ -113,16 +123,16 @@ def test_what_begins_so_that_is_asked_about_is_a_part_of_every_gap() -> None:
     from roadproof.library.diagnose import checked_library
 
     wanted = Restriction("unpreventable", "careful", "drives")
-    library = checked_library(files_for(rp.load().library.files))
+    library = checked_library(files_for(rp.load().library.files, "careful"))
     restricted = library.select("base", wanted.options)
     assert len(starts(restricted)) > len(starts(HOME)) == 2
 
 
 def test_a_near_miss_is_one_in_either_role() -> None:
     part = classes().parts[0]
-    whole = in_some_lane(either(part.without, exchanged(part.without)), LANE)
+    whole = in_some_lane(either(part.without, swap_roles(part.without)), LANE)
     assert near_miss(part).formula == whole.formula
-    assert exchanged(part.without).formula != part.without.formula
+    assert swap_roles(part.without).formula != part.without.formula
 
 
 def test_a_road_has_the_scenarios_of_all_its_zones() -> None:
@@ -152,21 +162,21 @@ def test_a_gap_that_is_near_in_a_whole_component_only_has_no_single_condition() 
 Sent = Callable[[str, Claim], Any]
 
 
-def asking(wider: tuple[str, ...] = (), lost: tuple[Reason, ...] = ()) -> GroupAsking:
+def asking(wider: tuple[str, ...] = (), lost: tuple[Reason, ...] = ()) -> GapSearch:
     """The claims about one component."""
     claims = GapClaims(Basis(HOME), wider)
     group = GapGroup(classes().parts[0])
-    return GroupAsking(claims, GapRoads((load_road("main-2"),), ()), group, (), lost)
+    return GapSearch(claims, GapRoads((load_road("main-2"),), ()), group, (), lost)
 
 
-def answered(steps: Asking[T], sent: Sent) -> tuple[T, list[tuple[str, Claim]]]:
+def answered(steps: ClaimGenerator[T], sent: Sent) -> tuple[T, list[tuple[str, Claim]]]:
     """What answers show, and all claims that are asked with their names."""
     asked: list[tuple[str, Claim]] = []
     try:
         name, claim = next(steps)
         while True:
             asked.append((name, claim))
-            name, claim = steps.send(sent(name, claim) or undecided(claim, Why.NO_DRIVE()))
+            name, claim = steps.send(sent(name, claim) or undecided(claim, ReasonKind.NO_DRIVE()))
     except StopIteration as end:
         return end.value, asked
 
@@ -179,7 +189,7 @@ def proof(claim: Claim) -> Any:
 @pytest.mark.parametrize("no_condition", [False, True])
 def test_a_class_is_empty_where_all_sectors_are_proved_together(no_condition: bool) -> None:
     made = asking()
-    part: Part | None = None if no_condition else made.group.component
+    part: ScenarioPart | None = None if no_condition else made.group.component
     claims = made.claims._all_are_near() if part is None else made.claims._is_redundant(part)
     assert len(claims) == len(SECTORS)
     answer, asked = answered(made._prove("a", part, LOOK, set()), lambda _, claim: proof(claim))
@@ -208,7 +218,7 @@ def test_near_misses_that_are_no_gaps_are_so_in_both_roles_and_all_sectors() -> 
     assert len({x.text for x in claims}) == 2 * len(SECTORS)
     near = {*subformulas(made._all_are_near()[0].formula)}
     for part in made._finest(SECTORS[0]):
-        assert {part.without.formula, exchanged(part.without).formula} <= near
+        assert {part.without.formula, swap_roles(part.without).formula} <= near
 
 
 def test_more_work_is_allowed_after_a_search_and_for_all_sectors() -> None:
@@ -222,13 +232,13 @@ def test_more_work_is_allowed_after_a_search_and_for_all_sectors() -> None:
     assert all(x.alone for x in every)
 
 
-@pytest.mark.parametrize("told", ["no drive was found", "cut off by the clock", "no search on main-2: fine"])
+@pytest.mark.parametrize("told", ["no drive was found", "cut off by the clock", "no search: fine"])
 def test_a_class_of_which_nothing_is_found_is_in_doubt(told: str) -> None:
-    lost = (Why.NOT_LOOKED_THROUGH("SIGKILL"),)
+    lost = (ReasonKind.NOT_LOOKED_THROUGH("SIGKILL"),)
     made = asking(lost=lost)
     for part in (made.group.component, None):
-        steps = made._settle("a", part, (), [])
-        answer, asked = answered(steps, lambda _, claim: undecided(claim, Why.TOLD(told)))
+        steps = made._decide("a", part, (), [])
+        answer, asked = answered(steps, lambda _, claim: undecided(claim, ReasonKind.TOLD(told)))
         assert (answer.verdict, answer.gaps, answer.certificate) == (V.UNKNOWN, (), None)
         assert told in answer.reason
         assert answer.reason.count("main-2") == 1
@@ -242,7 +252,7 @@ def test_a_claim_asks_for_a_gap_of_the_class() -> None:
     numbers, part = SECTORS[0], classes().parts[0]
     plain, first, second = (made.query(part, numbers, x) for x in ("", "extA", "ext"))
     assert calls(plain.formula) < calls(first.formula)
-    catches = {x: caught(HOME, numbers, x) for x in ("extA", "ext")}
+    catches = {x: catch_formula(HOME, numbers, x) for x in ("extA", "ext")}
     assert catches["extA"].formula in subformulas(first.formula)
     assert negation(catches["extA"]).formula in subformulas(second.formula)
     assert negation(catches["extA"]).formula not in subformulas(first.formula)
@@ -255,20 +265,20 @@ def test_a_claim_asks_for_a_gap_of_the_class() -> None:
 
 
 def known(question: CoverageQuestion, *verdicts: Any) -> Any:
-    names = question.claims.covered
+    names = question.claims.coverage_claims
     return {x: SimpleNamespace(verdict=v) for x, v in zip(names, verdicts, strict=True)}
 
 
 def test_one_claim_in_doubt_leaves_the_classes_to_be_asked() -> None:
     question = CoverageQuestion(Basis(HOME), gaps_of((), [load_road("main-2")], needed=True))
-    count = len(question.claims.covered)
-    assert [x.name for x in question.batches({})] == [*question.claims.covered]
+    count = len(question.claims.coverage_claims)
+    assert [x.name for x in question.batches({})] == [*question.claims.coverage_claims]
     some = known(question, *[V.PROVED] * (count - 1), V.UNKNOWN)
     asked = [x.name for x in question.batches(some)][count:]
     assert asked == [f"help-simple-1-{k}" for k in range(1, 8)], "simple drives are looked through"
     every = known(question, *[V.PROVED] * count)
     assert len(question.batches(every)) == count
-    scanned = some | {x: undecided(y, Why.PROCESS("SIGKILL")) for x, y in question.simple.items()}
+    scanned = some | {x: undecided(y, ReasonKind.PROCESS("SIGKILL")) for x, y in question.simple.items()}
     groups = question.batches(scanned)[count + len(question.simple) :]
     assert [x.name for x in groups] == question.groups
     few = replace(question, only=frozenset(question.groups[:2]))
@@ -276,7 +286,7 @@ def test_one_claim_in_doubt_leaves_the_classes_to_be_asked() -> None:
 
 
 def test_classes_of_gaps_by_name_are_asked_about_by_component_and_all_empty_where_there_is_no_gap() -> None:
-    kinds = gap_kinds(Basis(HOME), range(1, 9))
+    kinds = named_gap_classes(Basis(HOME), range(1, 9))
     every, few = kinds.question(()), kinds.question({*kinds.parts} - {"gap_behaviourSV_1"})
     assert few.groups == ["behaviourSV_1"]
     assert few.groups != every.groups == [*every.claims.groups]
@@ -286,10 +296,10 @@ def test_classes_of_gaps_by_name_are_asked_about_by_component_and_all_empty_wher
     [part] = few.claims.groups["behaviourSV_1"].parts
     found = ClassAnswer(part, verdict=V.UNKNOWN)
     one, two = (ProofResult(read_claim(HOME, "true"), verdict=x) for x in (V.PROVED, V.UNKNOWN))
-    some = kinds.answers(Survey((one, two), (found,), ()))
+    some = kinds.answers(GapSurvey((one, two), (found,), ()))
     assert {name: x for name, x in some.items() if x is not None} == {"gap_behaviourSV_1": found}
     assert some.keys() == kinds.parts.keys()
-    none = kinds.answers(Survey((one, one), (), ()))
+    none = kinds.answers(GapSurvey((one, one), (), ()))
     assert {name: x and x.verdict for name, x in none.items()} == dict.fromkeys(kinds.parts, V.IMPOSSIBLE)
 
 
@@ -297,14 +307,14 @@ def test_claims_name_wider_sets_roads_and_vehicles() -> None:
     part, roads = classes().parts[0], [load_road(x) for x in ("main-2", "main-3")]
     truck = Basis(HOME, vehicles={"POV": load_vehicle("truck")})
     usual = GapClaims(Basis(HOME))
-    sought = [usual.sought(part, x) for x in roads]
+    sought = [usual.gap_exists(part, x) for x in roads]
     sought += [
-        GapClaims(truck).sought(part, roads[0]),
-        GapClaims(Basis(HOME), ("extA",)).sought(part, roads[0], "extA"),
+        GapClaims(truck).gap_exists(part, roads[0]),
+        GapClaims(Basis(HOME), ("extA",)).gap_exists(part, roads[0], "extA"),
     ]
     assert len({x.digest() for x in sought}) == 4
-    judged = [x.judged(NeedJudge(x, "a"), "any") for x in (usual, GapClaims(Basis(HOME), ("extA",)))]
-    judged += [usual.judged(NeedJudge(usual, "a"), "other")]
+    judged = [x.judgement_claim(NeedJudge(x, "a"), "any") for x in (usual, GapClaims(Basis(HOME), ("extA",)))]
+    judged += [usual.judgement_claim(NeedJudge(usual, "a"), "other")]
     assert len({x.digest() for x in judged}) == 3
 
 
@@ -316,9 +326,9 @@ def test_a_drive_that_is_given_is_no_other_and_nowhere_else() -> None:
     drives = [next(apart), next(apart)]
 
     def claim(road: Any = road, drive: Any = drives[0], lane: str | None = None, horizon: int = 9) -> Claim:
-        return claims.given(query, road, drive, lane, Fraction(horizon))
+        return claims.holds_on(query, road, drive, lane, Fraction(horizon))
 
-    answer, _ = Engines(Work()).settle(claim())
+    answer, _ = Engines(Work()).answer_claim(claim())
     data = answer_data(answer)
     assert answer.verdict is V.WITNESSED
     assert read_answer(claim(), data, "gap.json").verdict is V.WITNESSED
@@ -333,19 +343,19 @@ def test_what_a_forged_judgement_names_is_left_out() -> None:
     claims, road = GapClaims(Basis(HOME)), load_road("main-2")
     judge = SimpleJudge(claims, road, 0, 7)
     forged = SimpleGaps(gaps=tuple(SimpleGap(number=k, first="", classes=()) for k in (-1, 10**6)))
-    assert [*judge.found(forged)] == []
+    assert [*judge.drives_of(forged)] == []
     assert not judge.confirms(forged)
     assert judge.confirms(SimpleGaps(gaps=()))
     twice = SimpleGap(number=7, first="", classes=())
     assert not judge.confirms(SimpleGaps(gaps=(twice, twice)))
     made, part = asking(), classes().parts[0]
     drive = next(iter(simple_drives(road, load_vehicle("car"))))
-    found = FoundGap(SimpleDrives(road, claims.classes, claims.trials).file(drive), "", (part.key,))
+    found = GapDrive(SimpleDrives(road, claims.classes, claims.trials).file(drive), "", (part.key,))
     for scenario, lane in ((99, "main-1"), (None, None), (part.scenario, "nowhere")):
-        near = Near(scenario=scenario, turned=False, lane=lane, caught_by=(), elsewhere=())
-        sent: Any = SimpleNamespace(evidence=Judged(near))
+        near = NearMiss(scenario=scenario, turned=False, lane=lane, caught_by=(), elsewhere=())
+        sent: Any = SimpleNamespace(evidence=JudgedTrace(near))
         gap, asked = answered(made._gap("a", part, found), lambda name, _, x=sent: x)
-        assert gap == Why.DRIVE_REJECTED()
+        assert gap == ReasonKind.DRIVE_REJECTED()
         assert [name for name, _ in asked] == ["near-a"]
 
 
@@ -356,7 +366,7 @@ def test_a_definition_is_spare_where_all_is_proved_without_it() -> None:
 
         def sent(name: str, claim: Claim, doubtful: str = doubtful) -> Any:
             if name.startswith("help-"):
-                return SimpleNamespace(evidence=Judged(Needing(drive=None)))
+                return SimpleNamespace(evidence=JudgedTrace(NeedJudgement(drive=None)))
             return None if name == doubtful else proof(claim)
 
         need, asked = answered(ask_need(claims, "cutIn"), sent)

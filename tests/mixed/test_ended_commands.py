@@ -6,14 +6,14 @@ from typing import Any
 import pytest
 
 from extensions.assurance.test_build_results import agree
-from roadproof.errors import InputError, LostError, MissingSolverError, SharedError, UsageError
+from roadproof.errors import InputError, LostWorkError, MissingSolverError, SharedError, UsageError
 from roadproof.frontends.cli.help import command_parser, written_files
 from roadproof.frontends.cli.main import COMMANDS, main
 from roadproof.verdict import ExitCode
 
 WITH_FILES = [x for x in COMMANDS if {"junit", "sarif"} <= {*written_files(command_parser(x))}]
 ENDINGS = [
-    *(x("it is so") for x in (InputError, UsageError, MissingSolverError, LostError, SharedError)),
+    *(x("it is so") for x in (InputError, UsageError, MissingSolverError, LostWorkError, SharedError)),
     ValueError("it is so"),
     OSError(28, "it is so"),
     KeyboardInterrupt(),

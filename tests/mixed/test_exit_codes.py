@@ -9,28 +9,31 @@ from typing import Any
 
 import pytest
 
+import roadproof as rp
+from roadproof.errors import UsageError
 from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.kernels import Word
+from roadproof.evidence.kernels import KernelVerdict
 from roadproof.extensions.assurance.assuring import AssuranceReport
 from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
-from roadproof.extensions.drivers.lines import SIDES, Line, end_of, sides_in
-from roadproof.extensions.drivers.preventable.view import Plate, Shown
+from roadproof.extensions.drivers.lines import SIDES, PlateLine, end_of, sides_in
+from roadproof.extensions.drivers.preventable.view import PlateResult, Shown
 from roadproof.extensions.drivers.preventing import Plates
 from roadproof.extensions.pages.reporting import Page
 from roadproof.extensions.surveys.classifying import Classifications
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer, is_covered, verdict_on, with_counts
-from roadproof.extensions.surveys.covering import CODES
-from roadproof.extensions.surveys.explore.values import Boundary, ExplorationResult
+from roadproof.extensions.surveys.covering import CODES, Coverages
+from roadproof.extensions.surveys.explore.values import ExplorationResult, SweepBoundary
 from roadproof.extensions.surveys.extremes.extreme import Extreme
 from roadproof.extensions.surveys.extremes.points import PointFinding
 from roadproof.extensions.traffic.evaluating import Evaluation
 from roadproof.extensions.traffic.monitoring import MonitorAnswer
 from roadproof.frontends.api.comparing import ComparisonAnswer
 from roadproof.frontends.api.drives import Witnesses
+from roadproof.frontends.api.ordering import Orders
 from roadproof.frontends.api.proofs import Proofs
-from roadproof.frontends.api.questioned import QuestionAnswers
-from roadproof.frontends.api.studies import Orders, Overlaps
-from roadproof.reasons import Why
+from roadproof.frontends.api.question_answers import QuestionAnswers
+from roadproof.frontends.api.relations import Overlaps
+from roadproof.reasons import ReasonKind
 from roadproof.verdict import ExitCode, Verdict
 
 V = Verdict
@@ -114,6 +117,17 @@ def test_a_formula_on_a_trace() -> None:
 
 
 # --- coverage ----------------------------------------------------------------------------------------
+
+
+def test_coverage_by_a_set_that_is_no_wider_is_refused_before_any_search(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def decide(*_: object) -> None:
+        raise AssertionError("a search was begun")
+
+    monkeypatch.setattr(Coverages, "decide", decide)
+    with pytest.raises(UsageError, match="--wider base does not extend --set ext"):
+        rp.coverage(rp.load("ext"), wider="base")
 
 
 def test_covered_is_every_claim_proved() -> None:
@@ -200,24 +214,24 @@ def test_recordings() -> None:
 
 
 def shown(side: Any, drive: Any = None, is_there: bool = True) -> Shown:
-    return Shown(side, {}, drive, Why.NO_DRIVE(), is_there=is_there)
+    return Shown(side, {}, drive, ReasonKind.NO_DRIVE(), is_there=is_there)
 
 
 def test_plates() -> None:
     """A side that no line has needs no drive; a plate without lines is one whose process died."""
     for drives, there in product(product((None, DRIVE), repeat=2), product((False, True), repeat=2)):
         sides = [shown(*x) for x in zip(SIDES, drives, there, strict=True)]
-        plate = Plate("p", "careful", {}, shown=tuple(sides))
+        plate = PlateResult("p", "careful", {}, shown=tuple(sides))
         lacking = any(x.is_there and x.drive is None for x in sides)
         assert plate.verdict is (V.UNKNOWN if lacking else V.WITNESSED), (drives, there)
-    assert Plate("p", "careful", {}).verdict is V.UNKNOWN
+    assert PlateResult("p", "careful", {}).verdict is V.UNKNOWN
 
 
 def test_sides_of_a_plate() -> None:
     """Which sides a plate has more than single places of, as its lines say."""
     zero, half, one = Fraction(0), Fraction(1, 2), Fraction(1)
-    mixed = Line(zero, ((end_of(zero), end_of(half)),))
-    free, full = Line(zero, ()), Line(zero, ((end_of(zero), end_of(one)),))
+    mixed = PlateLine(zero, ((end_of(zero), end_of(half)),))
+    free, full = PlateLine(zero, ()), PlateLine(zero, ((end_of(zero), end_of(one)),))
     for lines in ((mixed,), (free,), (full,), (mixed, free), ()):
         wanted = {"preventable"} if any(x is not full for x in lines) else set()
         wanted |= {"unpreventable"} if any(x is not free for x in lines) else set()
@@ -225,12 +239,15 @@ def test_sides_of_a_plate() -> None:
 
 
 def test_plates_and_what_coq_says_of_their_boundaries(monkeypatch: pytest.MonkeyPatch) -> None:
-    words = {x: 0 if x is Word.ACCEPTED else 20 if x is Word.UNKNOWN else 30 for x in Word}
+    words = {
+        x: 0 if x is KernelVerdict.ACCEPTED else 20 if x is KernelVerdict.UNKNOWN else 30
+        for x in KernelVerdict
+    }
     for verdicts, said in product(
         mixtures([V.WITNESSED, V.PROVED, V.UNKNOWN], 3)[:12], mixtures([*words], 3)
     ):
         plates = object.__new__(Plates)
-        object.__setattr__(plates, "boundaries", [of(word=x) for x in said])
+        object.__setattr__(plates, "boundaries", [of(verdict=x) for x in said])
         monkeypatch.setattr(Plates, "verdicts", dict(enumerate(verdicts)))
         expected = gravest([20 * (V.UNKNOWN in verdicts), *(words[x] for x in said)])
         assert plates.exit_code == expected
@@ -244,13 +261,14 @@ def test_pages_say_how_many_claims_are_not_accepted() -> None:
 
 
 def test_assurance_cases() -> None:
-    from roadproof.extensions.assurance.case.states import State
+    from roadproof.extensions.assurance.case.states import ElementState
 
-    for state in State:
+    for state in ElementState:
         for codes in mixtures([ExitCode.UNEXPECTED, ExitCode.BAD_INPUT], 3):
-            solutions = {k: of(exit_code=x, state=State.BROKEN) for k, x in enumerate(codes)}
-            solutions["open"] = of(exit_code=ExitCode.OUR_FAULT, state=State.UNDECIDED)
-            expected = max(codes) if state is State.BROKEN else 0 if state is State.HOLDS else 20
+            solutions = {k: of(exit_code=x, state=ElementState.BROKEN) for k, x in enumerate(codes)}
+            solutions["open"] = of(exit_code=ExitCode.OUR_FAULT, state=ElementState.UNDECIDED)
+            broken, holds = ElementState.BROKEN, ElementState.HOLDS
+            expected = max(codes) if state is broken else 0 if state is holds else 20
             assert code_of(AssuranceReport, state=state, solutions=solutions) == expected
 
 
@@ -266,7 +284,7 @@ def test_an_exploration_is_decided_where_both_sides_of_every_bracket_are() -> No
     for places in product((held, none, open_), (none, open_), (held, open_), (none, open_, None)):
         grid, missed, best, beyond = places
         explored = ExplorationResult(
-            (grid,), (Boundary(held, missed, None),), (Extreme(DRIVE, (), best, beyond, None, 1),)
+            (grid,), (SweepBoundary(held, missed, None),), (Extreme(DRIVE, (), best, beyond, None, 1),)
         )
         listed = [grid, held, missed, best, *([] if beyond is None else [beyond])]
         assert sorted(explored.verdicts) == sorted(x.verdict for x in listed)

@@ -15,17 +15,19 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from api.doors import FALSE, SYMMETRIC
+from api.both_interfaces import FALSE, SYMMETRIC
 from roadproof.errors import InputError, UsageError
+from roadproof.evidence.answer import undecided
 from roadproof.evidence.claim import Exists
 from roadproof.evidence.specifications import specification_names
-from roadproof.frontends.api.proofs import claims_of
+from roadproof.frontends.api.proofs import claims_question
 from roadproof.questions.checking import read_folder
-from roadproof.questions.data import QUESTION as QUESTION_FILE
+from roadproof.questions.question import QUESTION as QUESTION_FILE
 from roadproof.questions.store import Store
+from roadproof.reasons import ReasonKind
 from roadproof.runtime import files
 from roadproof.runtime.budget import Effort
-from roadproof.runtime.files import hold_folder, read_limited, utf8, whole_file, write_whole
+from roadproof.runtime.files import atomic_file, lock_folder, read_limited, utf8, write_atomic
 
 FAST = "v_lon(SV) > 30 m/s -> v_lon(SV) > 20 m/s"
 NEAR = "v_lon(SV) > 40 m/s -> v_lon(SV) > 20 m/s"
@@ -36,7 +38,7 @@ NEAR = "v_lon(SV) > 40 m/s -> v_lon(SV) > 20 m/s"
 
 def test_a_file_is_whole_readable_and_alone(tmp_path: Path) -> None:
     path = tmp_path / "answer.json"
-    with whole_file(path) as file:
+    with atomic_file(path) as file:
         file.write(b"half")
         assert not path.exists()
         assert [x.name[0] for x in tmp_path.iterdir()] == ["."], "what is not whole is hidden"
@@ -46,7 +48,7 @@ def test_a_file_is_whole_readable_and_alone(tmp_path: Path) -> None:
 
 
 def fail_to_write(path: Path) -> None:
-    with whole_file(path) as file:
+    with atomic_file(path) as file:
         file.write(b"half")
         raise OSError(errno.ENOSPC, "No space left on device")
 
@@ -64,7 +66,7 @@ def test_a_link_is_followed(tmp_path: Path) -> None:
     (tmp_path / "real.json").write_text("before")
     link = tmp_path / "link.json"
     link.symlink_to("real.json")
-    write_whole(link, b"after")
+    write_atomic(link, b"after")
     assert link.is_symlink()
     assert (tmp_path / "real.json").read_bytes() == b"after"
 
@@ -89,8 +91,8 @@ def test_names_that_are_no_text_can_be_read_again() -> None:
 @pytest.mark.parametrize("shared", [False, True])
 def test_a_run_that_lives_keeps_others_out_at_once(shared: bool, tmp_path: Path) -> None:
     code = (
-        "import sys\nfrom pathlib import Path\nfrom roadproof.runtime.files import hold_folder\n"
-        f"with hold_folder(Path({str(tmp_path)!r}), {shared}):\n    print('held', flush=True)\n"
+        "import sys\nfrom pathlib import Path\nfrom roadproof.runtime.files import lock_folder\n"
+        f"with lock_folder(Path({str(tmp_path)!r}), {shared}):\n    print('held', flush=True)\n"
         "    sys.stdin.readline()\n"
     )
     pipe = subprocess.PIPE
@@ -101,15 +103,15 @@ def test_a_run_that_lives_keeps_others_out_at_once(shared: bool, tmp_path: Path)
     try:
         for mine in (False, True):
             if mine and shared:
-                with hold_folder(tmp_path, shared=True):
+                with lock_folder(tmp_path, shared=True):
                     pass
                 continue
-            with pytest.raises(InputError, match="another run is writing"), hold_folder(tmp_path, mine):
+            with pytest.raises(InputError, match="another run is writing"), lock_folder(tmp_path, mine):
                 pass
-        assert time.monotonic() - begun < files.LETTING_GO
+        assert time.monotonic() - begun < files.RELEASE_SECONDS
     finally:
         other.communicate("\n", timeout=60)
-    with hold_folder(tmp_path):
+    with lock_folder(tmp_path):
         pass
 
 
@@ -141,7 +143,7 @@ def test_who_is_about_to_end_holds_no_folder(
     rows = [f"{k}: FLOCK  ADVISORY  WRITE {pid} 08:01:{inode} 0 EOF" for k, pid in enumerate("879")]
     (tmp_path / "locks").write_text("\n".join(rows) + "\n")
     try:
-        assert files._lives("7") is lives
+        assert files._is_alive("7") is lives
         assert files._holder_lives(handle) is lives
     finally:
         os.close(handle)
@@ -242,14 +244,14 @@ def test_what_is_assumed_is_assumed_in_every_answer(tmp_path: Path) -> None:
 
 def test_a_key_changes_with_all_that_is_asked() -> None:
     def key(claim: str, **more: Any) -> str:
-        asked = replace(claims_of(rp.load(), [claim], None), **more)
+        asked = replace(claims_question(rp.load(), [claim], None), **more)
         [found] = asked.claims.values()
         return Store(None, asked.kind, asked.work).key(found)
 
     usual = key(FAST)
     assert usual == key(f"  {FAST}  ")
-    task = claims_of(rp.load(), [FAST], None).tasks[0]
-    basis = claims_of(rp.load(), [FAST], None).basis
+    task = claims_question(rp.load(), [FAST], None).tasks[0]
+    basis = claims_question(rp.load(), [FAST], None).basis
     others = [
         key(NEAR),
         key(FAST, basis=replace(basis, effort=Effort(3.0))),
@@ -259,6 +261,27 @@ def test_a_key_changes_with_all_that_is_asked() -> None:
         key(FAST, tasks=(replace(task, within=Exists(horizon=Fraction(3))),)),
     ]
     assert len({usual, *others}) == 1 + len(others)
+
+
+def test_a_key_is_that_of_one_version_of_answers(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = claims_question(rp.load(), [FAST], None)
+    [claim] = asked.claims.values()
+    store = Store(None, asked.kind, asked.work)
+    key = store.key(claim)
+    monkeypatch.setattr("roadproof.questions.store.ANSWERS", "9.9.9")
+    assert store.key(claim) != key
+
+
+@pytest.mark.parametrize("gone", ["the folder", "its question"])
+def test_an_answer_is_not_written_where_the_folder_is_gone(gone: str, tmp_path: Path) -> None:
+    asked = claims_question(rp.load(), [FAST], None)
+    [(name, claim)] = asked.claims.items()
+    folder = tmp_path / "answers"
+    if gone == "its question":
+        folder.mkdir()
+    with pytest.raises(InputError, match="was removed during the run"):
+        Store(folder, asked.kind, asked.work).keep(name, undecided(claim, ReasonKind.NO_DRIVE()))
+    assert not [*tmp_path.rglob("*.json")]
 
 
 def test_an_answer_to_another_claim_is_not_taken_for_this_one(
@@ -271,7 +294,7 @@ def test_an_answer_to_another_claim_is_not_taken_for_this_one(
 
 
 def test_each_claim_of_the_list_is_read_in_its_set() -> None:
-    asked = claims_of(rp.load(), ["P1", "P2", "P3", "P4", "P5", "P6"], None)
+    asked = claims_question(rp.load(), ["P1", "P2", "P3", "P4", "P5", "P6"], None)
     sets = {x.task.set_name for x in asked.tasks}
     assert len(sets) > 1
     for task in (x.task for x in asked.tasks):

@@ -12,20 +12,21 @@ import pytest
 
 from roadproof.extensions.surveys.redundancy import RedundancyQuestion
 from roadproof.frontends.api.definitions import load
-from roadproof.frontends.api.proofs import claims_of
+from roadproof.frontends.api.proofs import claims_question
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Source
 from roadproof.questions.basis import Basis
+from roadproof.questions.decide import decide_claims, look_up, shard_filter
 from roadproof.questions.overlap import Meeting, OverlapQuestion
-from roadproof.questions.question import walk
-from roadproof.questions.settle import look_up, settle, share_of
+from roadproof.questions.question import walk_batch
 from roadproof.questions.store import Store
 from roadproof.runtime import archives, package_data
 from roadproof.runtime.archives import SWITCH
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.executors import Shard
 from roadproof.world.models import load_road, load_vehicle
+from shipping.archive import ship
 
 KEY = "5eed"
 
@@ -37,15 +38,15 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     (tmp_path / "models").mkdir()
     (tmp_path / "models/car.toml").write_text("one")
     for module in (archives, package_data):
-        monkeypatch.setattr(module, "shipped", lambda folder: tmp_path / folder)
-    package_data.program.cache_clear()
-    archives.archived.cache_clear()
+        monkeypatch.setattr(module, "shipped_folder", lambda folder: tmp_path / folder)
+    package_data.program_digest.cache_clear()
+    archives.shipped_answers.cache_clear()
     yield tmp_path
-    archives.archived.cache_clear()
-    package_data.program.cache_clear()
+    archives.shipped_answers.cache_clear()
+    package_data.program_digest.cache_clear()
 
 
-def found(kind: str = "overlap", key: str = KEY) -> archives.Known | None:
+def found(kind: str = "overlap", key: str = KEY) -> archives.KnownText | None:
     return archives.recall(kind, key)
 
 
@@ -53,7 +54,7 @@ def put(where: str, home: Path) -> None:
     if where == "cache":
         archives.remember(KEY, "{}")
     else:
-        archives.ship(home / "proofs/known", "overlap", {KEY: "{}"})
+        ship(home / "proofs/known", "overlap", {KEY: "{}"})
 
 
 @pytest.mark.parametrize("where", ["cache", "shipped"])
@@ -83,7 +84,7 @@ def test_a_changed_model_or_program_has_no_answers(change: str, home: Path) -> N
             model.unlink()
     if model.exists():
         os.utime(model, ns=(before.st_atime_ns, before.st_mtime_ns))  # times do not count
-    package_data.program.cache_clear()
+    package_data.program_digest.cache_clear()
     assert found() is None
 
 
@@ -92,28 +93,28 @@ def test_a_changed_source_has_no_answers(home: Path, monkeypatch: pytest.MonkeyP
     source.parent.mkdir(parents=True)
     source.write_text("one")
     monkeypatch.setattr(package_data, "__file__", str(source))
-    package_data.program.cache_clear()
+    package_data.program_digest.cache_clear()
     put("cache", home)
     assert found() is not None
     (source.parents[1] / "more.py").write_text("another module")
-    package_data.program.cache_clear()
+    package_data.program_digest.cache_clear()
     assert found() is None
 
 
 def test_what_is_switched_off_is_neither_taken_nor_kept(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = claims_of(load(), ["v_lon(SV) > 2 m/s -> v_lon(SV) > 1 m/s"], None)
+    asked = claims_question(load(), ["v_lon(SV) > 2 m/s -> v_lon(SV) > 1 m/s"], None)
     monkeypatch.setenv(SWITCH, "off")
-    settle(asked, hands=1)
+    decide_claims(asked, executor=1)
     assert not [*(home / "cache/roadproof/answers").glob("*")]
     monkeypatch.setenv(SWITCH, "on")
-    settle(asked, hands=1)
+    decide_claims(asked, executor=1)
     monkeypatch.setenv(SWITCH, "off")
-    assert not settle(asked, hands=1).origins
+    assert not decide_claims(asked, executor=1).origins
 
 
 @pytest.mark.parametrize("change", ["an answer", "the seal", "half of it", "no archive", "no text"])
 def test_a_shipped_archive_that_was_changed_is_none(change: str, home: Path) -> None:
-    path = archives.ship(home / "proofs/known", "overlap", {KEY: '{"verdict": "PROVED"}', "other": "{}"})
+    path = ship(home / "proofs/known", "overlap", {KEY: '{"verdict": "PROVED"}', "other": "{}"})
     assert found() is not None
     seal, lines = lzma.decompress(path.read_bytes()).split(b"\n", 1)
     content = {
@@ -123,7 +124,7 @@ def test_a_shipped_archive_that_was_changed_is_none(change: str, home: Path) -> 
     }.get(change, seal + b"\n" + lines)
     data = lzma.compress(content)
     path.write_bytes({"half of it": data[: len(data) // 2], "no archive": b"x"}.get(change, data))
-    archives.archived.cache_clear()
+    archives.shipped_answers.cache_clear()
     assert found() is None
 
 
@@ -181,15 +182,15 @@ def test_a_claim_for_one_model_is_none_for_another() -> None:
 
 
 def _first_claim(question: Any) -> Any:
-    [(_, claim), *_] = [x for batch in question.batches({}) for x in walk(batch, lambda *_: None)]
+    [(_, claim), *_] = [x for batch in question.batches({}) for x in walk_batch(batch, lambda *_: None)]
     return claim
 
 
 def test_what_is_known_of_a_formula_is_known_in_each_set_that_has_it() -> None:
     text = "v_lon(SV) > 2 m/s -> v_lon(SV) > 1 m/s"
-    settle(claims_of(load("base"), [text], None), hands=1)
+    decide_claims(claims_question(load("base"), [text], None), executor=1)
     for home in (load("extA"), load("base", options={"lateral_sign": "literal"})):
-        found = settle(claims_of(home, [text], None), hands=1)
+        found = decide_claims(claims_question(home, [text], None), executor=1)
         assert [*found.origins.values()] == ["cache"]
         [certificate] = [x.certificate for x in found.answers.values()]
         assert certificate is not None
@@ -198,11 +199,13 @@ def test_what_is_known_of_a_formula_is_known_in_each_set_that_has_it() -> None:
 
 
 def test_known_answers_are_looked_up_by_the_claim() -> None:
-    one, other = (claims_of(load(), [f"v_lon(SV) > {k} m/s -> v_lon(SV) > 1 m/s"], None) for k in (2, 3))
-    first = settle(one, hands=1)
+    one, other = (
+        claims_question(load(), [f"v_lon(SV) > {k} m/s -> v_lon(SV) > 1 m/s"], None) for k in (2, 3)
+    )
+    first = decide_claims(one, executor=1)
     assert not first.origins
-    assert [*settle(one, hands=1).origins.values()] == ["cache"]
-    assert not settle(one, hands=1, fresh=True).origins
+    assert [*decide_claims(one, executor=1).origins.values()] == ["cache"]
+    assert not decide_claims(one, executor=1, fresh=True).origins
     assert look_up(one) == first.answers
     assert look_up(other) == {}
 
@@ -210,15 +213,15 @@ def test_known_answers_are_looked_up_by_the_claim() -> None:
 @pytest.mark.parametrize("of", [2, 3])
 def test_a_later_batch_is_in_exactly_one_share(of: int) -> None:
     first = ["a", "b", "c"]
-    shares = [share_of(Shard(k, of), first) for k in range(1, of + 1)]
+    shares = [shard_filter(Shard(k, of), first) for k in range(1, of + 1)]
     for name in (*first, *(f"later-{k}" for k in range(20))):
         assert sum(is_ours(name) for is_ours in shares) == 1, name
 
 
 def test_an_index_says_the_values_of_all_parameters() -> None:
-    said = Basis(LIBRARY.select(), values={"rho": Fraction(1, 3)}).said()
-    assert {*said["parameters"]} == {*LIBRARY.parameters}  # type: ignore[misc]
-    assert said["parameters"]["rho"] == "1/3"  # type: ignore[index,call-overload]
+    said = Basis(LIBRARY.select(), values={"rho": Fraction(1, 3)}).common_data()
+    assert {*said["parameters"]} == {*LIBRARY.parameters}
+    assert said["parameters"]["rho"] == "1/3"
 
 
 def test_a_search_of_an_analysis_is_asked_as_the_question_is() -> None:

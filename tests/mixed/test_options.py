@@ -10,7 +10,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import UsageError
-from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.cli.main import main
 from roadproof.questions.data import question_data
 from roadproof.runtime.canonical import digest
@@ -75,7 +75,7 @@ def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Asked:
     (tmp_path / "mine.spec").write_text("param rho = 2 s where rho > 0\n")
     monkeypatch.chdir(tmp_path)
     found = Asked()
-    monkeypatch.setattr(QuestionAnswers, "settled", classmethod(lambda _, x, *more, **__: found.note(x)))
+    monkeypatch.setattr(QuestionAnswers, "decide", classmethod(lambda _, x, *more, **__: found.note(x)))
     return found
 
 
@@ -178,11 +178,11 @@ def test_a_range_has_a_name_and_two_ends(text: str, asked: Asked, capsys: pytest
 def test_who_does_the_work_is_as_the_options_say() -> None:
     from argparse import Namespace
 
-    from roadproof.frontends.cli.options import read_hands
+    from roadproof.frontends.cli.options import read_executor
     from roadproof.runtime.executors import Shard
 
     def hands(**more: Any) -> Any:
-        return read_hands(Namespace(**{"jobs": None, "json": None, **more}))
+        return read_executor(Namespace(**{"jobs": None, "json": None, **more}))
 
     assert hands(jobs=3).processes == 3
     assert hands(shard="2/3").shard == Shard(2, 3)

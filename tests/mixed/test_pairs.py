@@ -9,18 +9,18 @@ import pytest
 
 from roadproof.engines.search import batches
 from roadproof.engines.search.batches import Engines
-from roadproof.evidence.answer import Answer, undecided
-from roadproof.evidence.certificate import read_certificate
+from roadproof.evidence.answer import ClaimAnswer, undecided
+from roadproof.evidence.certificate_file import read_certificate
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both, negation
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario
 from roadproof.logic.parts import parts_of
 from roadproof.questions.basis import Basis
+from roadproof.questions.decide import decide_claims
 from roadproof.questions.overlap import Meeting, OverlapQuestion, PairVerdict, conjunctions, name_of
-from roadproof.questions.question import walk
-from roadproof.questions.settle import settle
-from roadproof.reasons import Why
+from roadproof.questions.question import walk_batch
+from roadproof.reasons import ReasonKind
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import Verdict
 
@@ -34,14 +34,14 @@ READINGS = conjunctions(HOME, *QUESTION.pairs[0], ANY_START)
 DRIVE: Any = object.__new__(JudgedDrive)
 
 
-def answered(claim: Any, verdict: Verdict, reason: str = "") -> Answer:
+def answered(claim: Any, verdict: Verdict, reason: str = "") -> ClaimAnswer:
     match verdict:
         case V.WITNESSED:
-            return Answer(claim, DRIVE)
+            return ClaimAnswer(claim, DRIVE)
         case V.IMPOSSIBLE:
-            return Answer(claim, replace(PROOF, claim=negation(claim.query).text))
+            return ClaimAnswer(claim, replace(PROOF, claim=negation(claim.query).text))
         case V.UNKNOWN | V.NONE_WITHIN:
-            return undecided(claim, Why.TOLD(reason or "why"), verdict)
+            return undecided(claim, ReasonKind.TOLD(reason or "why"), verdict)
         case _:
             raise AssertionError(verdict)
 
@@ -94,10 +94,10 @@ def test_what_is_claimed_of_a_pair() -> None:
 
 def test_the_next_reading_is_asked_until_one_holds() -> None:
     [batch] = QUESTION.batches({})
-    [(first, claim)] = walk(batch, lambda *_: None)
+    [(first, claim)] = walk_batch(batch, lambda *_: None)
     for verdict, left in ((V.WITNESSED, 0), (V.IMPOSSIBLE, 1), (V.NONE_WITHIN, 1), (V.UNKNOWN, 1)):
         known = {first: answered(claim, verdict)}
-        following = [name for name, _ in walk(batch, lambda name, _, known=known: known.get(name))]
+        following = [name for name, _ in walk_batch(batch, lambda name, _, known=known: known.get(name))]
         assert len(following) == left, verdict
         assert first not in following
 
@@ -106,9 +106,9 @@ def test_what_the_clock_cuts_off_is_in_doubt(monkeypatch: pytest.MonkeyPatch) ->
     def late(*_: Any) -> Any:
         raise BudgetExceeded(3.0)
 
-    monkeypatch.setattr("roadproof.engines.prove.induction.prove_of_scenarios", late)
+    monkeypatch.setattr("roadproof.engines.prove.induction.prove_via_opaque_driver", late)
     engines = Engines(QUESTION.work)
-    answers = [engines.settle(BASIS.claim(x))[0] for x in READINGS]
+    answers = [engines.answer_claim(BASIS.claim(x))[0] for x in READINGS]
     assert [x.verdict for x in answers] == [V.UNKNOWN, V.UNKNOWN]
     assert all("--timeout" in x.reason for x in answers)
 
@@ -122,13 +122,13 @@ def test_parts_that_another_claim_does_not_have_do_not_clash_there(monkeypatch: 
         asked.append(query.text)
         raise BudgetExceeded(1.0)
 
-    monkeypatch.setattr("roadproof.engines.prove.induction.prove_of_scenarios", note)
+    monkeypatch.setattr("roadproof.engines.prove.induction.prove_via_opaque_driver", note)
     here, there = ([*parts_of(x.formula)] for x in (mine, other))
     foreign = [x for x in there if x not in here]
     assert foreign
     batch = Engines(QUESTION.work)
     for core, is_tried in ((here[:1], True), (foreign, False), ([*here[:1], *foreign], False)):
-        batch.clashes[:] = [(negation(batches.of_parts(other, core)).formula, PROOF)]
+        batch.clashes[:] = [(negation(batches.conjunction_of(other, core)).formula, PROOF)]
         asked.clear()
         try:
             assert batch.follow(BASIS.claim(mine)) is None
@@ -144,13 +144,13 @@ def test_the_claims_of_a_lost_batch_are_asked_alone(monkeypatch: pytest.MonkeyPa
     def work(job: Any, jobs: Any, hands: Any, lost: Any, *_: Any, **__: Any) -> Any:
         asked.append([x.batch.name for x in jobs if x.batch.name])
         for place, x in enumerate(jobs):
-            yield place, lost(x, Why.PROCESS("SIGKILL"))
+            yield place, lost(x, ReasonKind.PROCESS("SIGKILL"))
 
     monkeypatch.setattr("roadproof.runtime.pool.work", work)
-    found = settle(question, hands=1, fresh=True).answers
+    found = decide_claims(question, executor=1, fresh=True).answers
     assert len(found) == len(question.pairs)
     assert {x.verdict for x in found.values()} == {V.UNKNOWN}
-    assert {x.reason for x in found.values()} == {Why.PROCESS("SIGKILL")}
+    assert {x.reason for x in found.values()} == {ReasonKind.PROCESS("SIGKILL")}
     batches, *alone = asked
     assert batches == [x.name for x in question.batches({})]
     assert [len(x) for x in alone] == [1] * len(found), "each by itself"

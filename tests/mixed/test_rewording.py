@@ -29,10 +29,10 @@ from extensions.catalogue.test_catalogue_verdicts import (
 )
 from roadproof.errors import InputError
 from roadproof.evidence.finding import Finding
-from roadproof.extensions.catalogue.asked import NOWHERE, Questions
-from roadproof.extensions.pages.page.results import Result
+from roadproof.extensions.catalogue.target_formulas import NO_CLASS, TargetFormulas
+from roadproof.extensions.pages.page.results import PageResult
 from roadproof.extensions.pages.page.summary import Overview, overview
-from roadproof.reasons import Reason, Why
+from roadproof.reasons import Reason, ReasonKind
 
 _ = asked  # a fixture
 ROOT = Path(__file__).parents[2]
@@ -58,8 +58,8 @@ def reworded(seed: int) -> Iterator[None]:
     random = Random(seed)
     start = Finding.__init__
 
-    def reason(cls: type[Reason], kind: Why, *values: object) -> Reason:
-        is_empty = kind is Why.NONE or (kind is Why.TOLD and not str(values[0]))
+    def reason(cls: type[Reason], kind: ReasonKind, *values: object) -> Reason:
+        is_empty = kind is ReasonKind.NONE or (kind is ReasonKind.TOLD and not str(values[0]))
         made = str.__new__(cls, "" if is_empty else words(random))
         made.kind, made.values = kind, values
         return made
@@ -97,10 +97,10 @@ def other(value: Any, random: Random) -> Any:
 # --- catalogue -------------------------------------------------------------------------------------
 
 
-def catalogues(asked: Questions) -> Iterator[object]:
+def catalogues(asked: TargetFormulas) -> Iterator[object]:
     """Verdicts and exit codes of catalogues of all kinds."""
-    reason = Why.NO_DRIVE()
-    for tests in ([GOOD], [GOOD, SHOWN], [GOOD, ("b", (NOWHERE,))], [("a", (ONE,)), ("b", ())]):
+    reason = ReasonKind.NO_DRIVE()
+    for tests in ([GOOD], [GOOD, SHOWN], [GOOD, ("b", (NO_CLASS,))], [("a", (ONE,)), ("b", ())]):
         for facts in (
             (),
             (fact("t", "", "open", reason=reason),),
@@ -116,7 +116,7 @@ def catalogues(asked: Questions) -> Iterator[object]:
 
 
 @pytest.mark.parametrize("seed", range(100))
-def test_a_catalogue(seed: int, asked: Questions) -> None:
+def test_a_catalogue(seed: int, asked: TargetFormulas) -> None:
     before = [*catalogues(asked)]
     assert len({x[1] for x in before}) == 3
     with reworded(seed):
@@ -158,7 +158,7 @@ ANSWERS = {
 
 
 def summary(kind: str, data: dict[str, Any]) -> tuple[object, ...]:
-    found: Overview = overview(Result(f"{kind}.json", kind, data), kind, "asked")
+    found: Overview = overview(PageResult(f"{kind}.json", kind, data), kind, "asked")
     expected = [x.expected for x in found.statements]
     return found.verdicts, found.rank, found.rejected, found.remarked, expected
 

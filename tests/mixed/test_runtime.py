@@ -1,4 +1,4 @@
-"""Exit codes of ended commands, words of the progress, and files in XML of which a part is wrong."""
+"""Exit codes of ended commands, and words of the progress."""
 
 import subprocess
 import sys
@@ -6,11 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.errors import InputError, LostError, MissingSolverError, SharedError, TextError, UsageError
+from roadproof.errors import InputError, LostWorkError, MissingSolverError, SharedError, TextError, UsageError
 from roadproof.frontends.cli import main as command_line
 from roadproof.runtime.budget import BudgetExceeded
-from roadproof.runtime.progress import Cancelled, Stage, about, begin, is_heard, listening
-from roadproof.runtime.xml_reader import DEEPEST, by_id, number_in, read_xml
+from roadproof.runtime.progress import Cancelled, Stage, about, has_listener, listening, report_stage
 
 ROADPROOF = Path(sys.executable).parent / "roadproof"
 
@@ -21,7 +20,7 @@ def test_whose_fault_an_error_is() -> None:
         InputError: 3,
         TextError: 3,
         MissingSolverError: 4,
-        LostError: 20,
+        LostWorkError: 20,
         BudgetExceeded: 20,
         SharedError: 0,
         Cancelled: 130,
@@ -59,7 +58,7 @@ def test_an_answer_that_nobody_reads_is_not_delivered() -> None:
         (PermissionError(13, "denied", "a.json"), 3),
         (ValueError("x"), 70),
         (KeyboardInterrupt(), 130),
-        (LostError("left out"), 20),
+        (LostWorkError("left out"), 20),
         (SharedError("done"), 0),
     ],
 )
@@ -81,73 +80,16 @@ def test_stages_are_heard_inside_only_and_say_of_what_they_are() -> None:
     heard: list[Stage] = []
     with listening(heard.append):
         with about("claim 1"), about("its proof"):
-            begin("prove", "lane 1")
-        begin("search")
+            report_stage("prove", "lane 1")
+        report_stage("search")
         with listening(None):
-            assert is_heard()
-            begin("judge")
-    assert not is_heard()
-    begin("explain")
+            assert has_listener()
+            report_stage("judge")
+    assert not has_listener()
+    report_stage("explain")
     assert [(x.name, x.told, x.of) for x in heard] == [
         ("prove", "lane 1", "claim 1"),
         ("search", "", ""),
         ("judge", "", ""),
     ]
     assert str(heard[0]).startswith("claim 1: prove, lane 1 (after ")
-
-
-# --- XML ---------------------------------------------------------------------------------------------
-
-
-def xml(folder: Path, text: str) -> Path:
-    path = folder / "map.xml"
-    path.write_text(text)
-    return path
-
-
-@pytest.mark.parametrize("depth", [DEEPEST - 1, DEEPEST, DEEPEST + 1])
-def test_elements_are_so_deep_and_no_deeper(depth: int, tmp_path: Path) -> None:
-    """Beside each other there may be any number of them."""
-    beside = "<a/>" * (2 * DEEPEST)
-    path = xml(tmp_path, f"{'<a>' * depth}{beside if depth < DEEPEST else ''}{'</a>' * depth}")
-    if depth <= DEEPEST:
-        assert read_xml(path, "a").tag == "a"
-        return
-    with pytest.raises(InputError, match=f"inside {DEEPEST} others"):
-        read_xml(path, "a")
-
-
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        ("<!DOCTYPE a><a/>", "document type"),
-        ("<b/>", "the root is b, but a is needed"),
-        ("<a>", "no well-formed XML"),
-        ("<html><a/></html>", "page of HTML"),
-        ("\x1f\x8b", "compressed by gzip|no well-formed XML"),
-    ],
-)
-def test_what_is_no_file_of_the_format_is_named(text: str, told: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=told):
-        read_xml(xml(tmp_path, text), "a")
-    assert read_xml(xml(tmp_path, '<n:a xmlns:n="x"><n:c/></n:a>'), "a")[0].tag == "c"
-
-
-@pytest.mark.parametrize("text", ["", "x", "nan", "inf", "-inf", "1e999", None])
-def test_what_is_no_finite_number_is_refused(text: str | None, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="a finite number is needed"):
-        number_in(tmp_path, text, "width")
-    assert number_in(tmp_path, " -1.5e2 ", "width") == -150.0
-
-
-@pytest.mark.parametrize(
-    ("text", "told"), [("<r><a/></r>", "has no id"), ('<r><a id=""/></r>', "has no id"),
-                       ('<r><a id="1"/><a id="2"/><a id="1"/></r>', "a 1 occurs twice")]
-)  # fmt: skip
-def test_ids_are_there_and_differ(text: str, told: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=told):
-        by_id(tmp_path, list(read_xml(xml(tmp_path, text), "r")))
-    assert [*by_id(tmp_path, list(read_xml(xml(tmp_path, '<r><a id="1"/><a id="2"/></r>'), "r")))] == [
-        "1",
-        "2",
-    ]

@@ -11,10 +11,15 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import UsageError
+from roadproof.extensions.catalogue.settings import driver_models_or_none
+from roadproof.extensions.drivers.settings import initial_values
 from roadproof.extensions.exchange.streaming.arithmetic import HELPERS
 from roadproof.extensions.exchange.streaming.c_files import FLAGS
+from roadproof.extensions.pages.command_lines import flags_of
+from roadproof.extensions.surveys.settings import text_or_none
+from roadproof.extensions.traffic import readers as of_traffic
 from roadproof.frontends.settings import readers
-from roadproof.frontends.settings.flags import flags_of, read_keywords
+from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.option import Option
 from roadproof.frontends.settings.questions import Prove
 
@@ -25,15 +30,15 @@ READ: list[tuple[Any, dict[str, Any], tuple[str, ...]]] = [
     (readers.whole(1, 9), {"1": 1, "9": 9}, ("0", "10", "-1", "1.0", "", "x", "+1")),
     (readers.whole(0), {"0": 0, "1000000": 10**6}, ("-1", "1000001", "x")),
     (readers.seconds, {"6": Fraction(6), "3/5": Fraction(3, 5)}, ("0", "-1", "1/0", "1e3", "x", "")),
-    (readers.seconds_or_zero, {"0": Fraction(0), "0.6": Fraction(3, 5)}, ("-0.1", "1e3", "x", "")),
+    (of_traffic.seconds_or_zero, {"0": Fraction(0), "0.6": Fraction(3, 5)}, ("-0.1", "1e3", "x", "")),
     (readers.named("L"), {"a": ("L", "a"), "M=a": ("M", "a"), "M=a=b": ("M=a", "b")}, ()),
-    (readers.mapping_of("SV=a"), {"SV=a,A=b": {"SV": "a", "A": "b"}}, ("SV=a,SV=b", "SV=", "=a", "SV=a,")),
+    (of_traffic.mapping_of("SV=a"), {"SV=a,A=b": {"SV": "a", "A": "b"}}, ("SV=a,SV=b", "SV=", "=a", "A=a,")),
     (readers.assignment("--param"), {"rho = 1": ("rho", "1")}, ("rho=", "=1", "rho", "")),
     (readers.items_of("names"), {"a, b": ("a", "b")}, ("a,,b", "a,", ",", "")),
-    (readers.frame_range, {"1-3": (1, 3)}, ("1", "1-", "-3", "a-b")),
-    (readers.initial_values, {"Ve0=1,2": ("Ve0", ["1", "2"])}, ("Ve0", "Ve0=", "Ve0= ")),
-    (readers.driver_models_or_none, {"none": (), "a,b": ("a", "b")}, ("a,,b",)),
-    (readers.text_or_none, {"": None, "a": "a"}, ()),
+    (of_traffic.frame_range, {"1-3": (1, 3)}, ("1", "1-", "-3", "a-b")),
+    (initial_values, {"Ve0=1,2": ("Ve0", ["1", "2"])}, ("Ve0", "Ve0=", "Ve0= ")),
+    (driver_models_or_none, {"none": (), "a,b": ("a", "b")}, ("a,,b",)),
+    (text_or_none, {"": None, "a": "a"}, ()),
     (readers.folder, {"a": Path("a")}, ("",)),
 ]  # fmt: skip
 

@@ -12,23 +12,23 @@ import pytest
 
 import roadproof as rp
 from roadproof.engines.search import placing
-from roadproof.evidence.answer import Answer, Refutation, undecided
-from roadproof.evidence.certificate import read_certificate_data
+from roadproof.evidence.answer import ClaimAnswer, RefutingTrace, undecided
+from roadproof.evidence.certificate_file import read_certificate_data
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.surveys.classify.cells import whole_cell
-from roadproof.extensions.surveys.classify.division import DivisionQuestion, ToDivide
+from roadproof.extensions.surveys.classify.division import DivisionQuestion, DivisionSettings
 from roadproof.extensions.surveys.redundancy import Changes, RedundancyQuestion, changes_of
-from roadproof.frontends.api.drives import drives_asked
+from roadproof.frontends.api.drives import witness_question
 from roadproof.frontends.settings.questions import Witness
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.questions.basis import Basis
-from roadproof.questions.question import OwnWork, walk
+from roadproof.questions.question import OwnWork, walk_batch
 from roadproof.questions.store import Store
-from roadproof.reasons import Reason, Why
+from roadproof.reasons import Reason, ReasonKind
 from roadproof.runtime.budget import Work
 from roadproof.verdict import Verdict
 
@@ -51,14 +51,16 @@ def of(**fields: Any) -> Any:
 QUESTION = RedundancyQuestion(BASIS, Changes(among=(3,)))
 CHANGES = QUESTION.changes(3)
 NAMES, CLAIMS = QUESTION.named(3)[0]
-TRACE: Any = Refutation(of())
+TRACE: Any = RefutingTrace(of())
 
 
-def known(*shown: Any) -> dict[str, Answer]:
+def known(*shown: Any) -> dict[str, ClaimAnswer]:
     """Answers to the claims of the first change; None where one is not asked, or is in doubt."""
     claims = (CLAIMS.equal, CLAIMS.moving, CLAIMS.apart)
     pairs = zip(NAMES, claims, shown, strict=True)
-    return {name: undecided(x, Why.TOLD(name)) if y is None else Answer(x, y) for name, x, y in pairs}
+    return {
+        name: undecided(x, ReasonKind.TOLD(name)) if y is None else ClaimAnswer(x, y) for name, x, y in pairs
+    }
 
 
 @pytest.mark.parametrize(
@@ -104,11 +106,11 @@ def test_of_a_change_claims_are_asked_until_one_decides(shown: Any, asked: int) 
     first = known(*shown, *[None] * (3 - len(shown)))
     names: list[str] = []
 
-    def find(name: str, claim: Claim) -> Answer:
+    def find(name: str, claim: Claim) -> ClaimAnswer:
         names.append(name)
-        return first.get(name) or undecided(claim, Why.TOLD("none"))
+        return first.get(name) or undecided(claim, ReasonKind.TOLD("none"))
 
-    [*walk(batch, find)]
+    [*walk_batch(batch, find)]
     assert names[0] == "scenario-03"
     assert [x for x in names if x in NAMES] == [*NAMES[:asked]]
     assert len(names) == len({*names}), "changes that come to the same are asked once"
@@ -132,7 +134,7 @@ def test_both_values_of_a_part_are_tried_on_the_side_where_they_matter() -> None
 
 def test_searches_are_told_apart() -> None:
     def key(what: str = "danger(SV,POV)", using: Any = None, **more: Any) -> str:
-        asked = drives_asked((what,), using or rp.load(), Witness(jobs=1, **more))
+        asked = witness_question((what,), using or rp.load(), Witness(jobs=1, **more))
         [name] = asked.named
         claims = [asked.claim(x) for x in asked.claim_names(name)]
         return Store(None, asked.kind, asked.work).key(claims[-1])
@@ -157,6 +159,15 @@ def test_searches_are_told_apart() -> None:
     assert len({usual, *others}) == 1 + len(others)
 
 
+def test_no_further_drive_is_searched_where_none_was_found() -> None:
+    question = witness_question(("danger(SV,POV)",), rp.load(), Witness(jobs=1, count=3))
+    [batch] = question.batches({})
+    steps = batch.steps()
+    _, claim = next(steps)
+    with pytest.raises(StopIteration):
+        steps.send(undecided(claim, ReasonKind.NO_DRIVE()))
+
+
 def test_a_zone_is_moved_under_each_vehicle() -> None:
     from roadproof.world.models import load_road
 
@@ -173,7 +184,7 @@ def test_a_drive_of_another_formula_is_of_no_scenario(monkeypatch: pytest.Monkey
     made: list[Any] = []
     monkeypatch.setattr(placing, "JudgedDrive", lambda file, library: made.append(file))
     asked = read_claim(HOME, "v_lon(SV) > minSafe*1 m/s^2")
-    placing.judged_as(replace(DRIVE_FILE, scenario=4, values={"rho": Fraction(1)}), asked, HOME.library)
+    placing.judge_as(replace(DRIVE_FILE, scenario=4, values={"rho": Fraction(1)}), asked, HOME.library)
     assert (made[0].formula, made[0].scenario) == (asked.text, None)
     assert made[0].values == {"rho": 1, "minSafe": Fraction(3, 5)}
 
@@ -181,21 +192,21 @@ def test_a_drive_of_another_formula_is_of_no_scenario(monkeypatch: pytest.Monkey
 # --- a division of which a part is in doubt ------------------------------------------------------------
 
 
-DIVISION = DivisionQuestion(BASIS, ToDivide(scenarios=(4, 8)))
+DIVISION = DivisionQuestion(BASIS, DivisionSettings(scenarios=(4, 8)))
 AXIS = [*(f"axis-0-any-{x}" for x in ("4", "8", "4_8")), *(f"axis-0-only-{x}" for x in ("4", "8"))]
-IN_DOUBT = Why.TOLD("no proof was found")
+IN_DOUBT = ReasonKind.TOLD("no proof was found")
 
 
-def doubted(reasons: Mapping[str, Reason], question: DivisionQuestion = DIVISION) -> dict[str, Answer]:
+def doubted(reasons: Mapping[str, Reason], question: DivisionQuestion = DIVISION) -> dict[str, ClaimAnswer]:
     """Doubts about all claims that a division asks; with other reasons, by name."""
-    answers: dict[str, Answer] = {}
+    answers: dict[str, ClaimAnswer] = {}
 
-    def find(name: str, claim: Claim) -> Answer:
+    def find(name: str, claim: Claim) -> ClaimAnswer:
         return answers.setdefault(name, undecided(claim, reasons.get(name, IN_DOUBT)))
 
     for _ in range(2):
         for batch in question.batches(answers):
-            [*walk(batch, find)]
+            [*walk_batch(batch, find)]
     return answers
 
 
@@ -208,11 +219,11 @@ def test_a_division_asks_for_short_texts_of_the_cells_that_it_knows() -> None:
     found = DIVISION.view(answers)
     assert [x.holds for x in found.classes.what[0]] == [(4,), (4, 8), (8,)]
     assert (found.doubts, found.cut_off, found.data.scenarios) == ((), False, (4, 8))
-    assert DivisionQuestion.of(BASIS, write(DIVISION.asked), "here") == DIVISION
+    assert DivisionQuestion.of(BASIS, write(DIVISION.settings), "here") == DIVISION
 
 
 def test_a_division_in_any_words_asks_which_cells_there_are_alone() -> None:
-    quick = replace(DIVISION, asked=ToDivide(scenarios=(4, 8), in_few_words=False))
+    quick = replace(DIVISION, settings=DivisionSettings(scenarios=(4, 8), in_few_words=False))
     assert [*doubted({}, quick)] == AXIS
     assert quick.view(doubted({}, quick)).classes == DIVISION.view(doubted({})).classes
 
@@ -224,17 +235,17 @@ def test_claims_of_a_division_have_work_of_their_own() -> None:
     assert (DIVISION.work.proof, cell.work.proof) == (BASIS.proof, 2.0)
 
 
-@pytest.mark.parametrize(("reason", "stays"), [(Why.WORK(3.0), True), (Why.CLOCK(3.0), False)])
+@pytest.mark.parametrize(("reason", "stays"), [(ReasonKind.WORK(3.0), True), (ReasonKind.CLOCK(3.0), False)])
 def test_a_proof_that_was_not_found_is_sought_once_with_the_same_work(reason: Reason, stays: bool) -> None:
     """One that the clock has cut off is sought again."""
-    [(_, claim)] = walk(DIVISION.batches({})[0], lambda *_: None)
+    [(_, claim)] = walk_batch(DIVISION.batches({})[0], lambda *_: None)
     store = Store(None, DIVISION.kind, DIVISION.work)
     answer = store.exhausted(undecided(claim, reason))
     assert store.stands(answer) is stays
     assert not Store(None, DIVISION.kind, Work(proof=9.0, staged=True)).stands(answer)
 
 
-@pytest.mark.parametrize("late", [Why.CLOCK(3.0), Why.PROCESS("signal 9")])
+@pytest.mark.parametrize("late", [ReasonKind.CLOCK(3.0), ReasonKind.PROCESS("signal 9")])
 def test_a_division_in_doubt_says_so(late: Reason) -> None:
     made = DIVISION.view(doubted({"class_4-denies-8": late}))
     about = "whether there is a shorter text for class_4"

@@ -9,16 +9,16 @@ from typing import Any
 
 import pytest
 
-from roadproof.errors import InputError, LostError, UsageError
-from roadproof.reasons import Reason, Why
+from roadproof.errors import InputError, LostWorkError, UsageError
+from roadproof.reasons import Reason, ReasonKind
 from roadproof.runtime import dask_executor, process_pool, worker
 from roadproof.runtime.budget import Budget, BudgetExceeded, Effort
-from roadproof.runtime.dispatch import answers_of
-from roadproof.runtime.executors import Cluster, Executor, LostJob, Shard, try_again
+from roadproof.runtime.dispatch import run_jobs
+from roadproof.runtime.executors import Cluster, Executor, LostJob, Shard, run_with_retries
 from roadproof.runtime.pool import in_order, work
-from roadproof.runtime.process_pool import answers_of as in_processes
-from roadproof.runtime.progress import Stage, begin, listening
-from roadproof.runtime.worker import ended_by
+from roadproof.runtime.process_pool import run_jobs as in_processes
+from roadproof.runtime.progress import Stage, listening, report_stage
+from roadproof.runtime.worker import describe_exit
 
 OURS = "1.0.0"
 
@@ -112,7 +112,7 @@ def test_lost_jobs_are_doubts_of_themselves(tmp_path: Path) -> None:
     assert list(in_order(work(dying, range(5), 2, lost))) == [0, 1, -2, -3, 16]
     kept: list[int] = []
     (tmp_path / "more").mkdir()
-    with pytest.raises(LostError, match=r"3 of 5 jobs: .*; 4 of 5 jobs: ") as raised:
+    with pytest.raises(LostWorkError, match=r"3 of 5 jobs: .*; 4 of 5 jobs: ") as raised:
         kept.extend(in_order(work(Mixed(tmp_path / "more", {2: 9, 3: 9}), range(5), 2)))
     assert kept == [0, 1, 16]
     assert raised.value.exit_code == 20
@@ -134,7 +134,7 @@ def test_a_worker_does_the_jobs_of_its_job_itself() -> None:
 
 
 def staged(job: int) -> int:
-    begin("solve", f"job {job}")
+    report_stage("solve", f"job {job}")
     return job
 
 
@@ -169,7 +169,7 @@ def test_a_lost_job_has_its_last_attempt_alone() -> None:
             else:
                 yield place, place
 
-    found = dict(try_again(attempt, 5, Why.PROCESS))
+    found = dict(run_with_retries(attempt, 5, ReasonKind.PROCESS))
     assert asked == [[0, 1, 2, 3, 4], [1, 3], [1], [3]]
     assert {place: isinstance(x, LostJob) for place, x in found.items()} == {
         **dict.fromkeys((0, 2, 4), False),
@@ -185,13 +185,18 @@ def test_a_single_lost_job_is_tried_once_more() -> None:
         died.update((x, "SIGKILL") for x in places if x == 1)
         yield from ((x, x) for x in places if x != 1)
 
-    found = dict(try_again(attempt, 3, Why.PROCESS))
+    found = dict(run_with_retries(attempt, 3, ReasonKind.PROCESS))
     assert asked == [[0, 1, 2], [1]]
     assert isinstance(found[1], LostJob)
 
 
 def test_how_a_process_ended_is_told() -> None:
-    assert [ended_by(x) for x in (0, 3, -9, -11)] == ["exited with 0", "exited with 3", "SIGKILL", "SIGSEGV"]
+    assert [describe_exit(x) for x in (0, 3, -9, -11)] == [
+        "exited with 0",
+        "exited with 3",
+        "SIGKILL",
+        "SIGSEGV",
+    ]
     [(_, lost)] = in_processes(os._exit, [0], 1)  # type: ignore[type-var]
     assert isinstance(lost, LostJob)
     assert "exited with 0" in lost.reason
@@ -200,7 +205,7 @@ def test_how_a_process_ended_is_told() -> None:
 def test_a_process_that_works_for_another_divides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(worker, "_ends_here", False)
     assert not worker.is_worker()
-    worker.end_here()
+    worker.mark_as_worker()
     assert worker.is_worker()
 
 
@@ -216,9 +221,9 @@ def test_where_no_further_process_can_be_started_the_others_go_on() -> None:
 
 
 def test_a_cluster_is_not_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dask_executor, "answers_of", lambda function, jobs, cluster: iter([(0, cluster)]))
+    monkeypatch.setattr(dask_executor, "run_jobs", lambda function, jobs, cluster: iter([(0, cluster)]))
     cluster = Cluster("tcp://host:1")
-    assert list(answers_of(len, [[]], Executor(cluster=cluster))) == [(0, cluster)]
+    assert list(run_jobs(len, [[]], Executor(cluster=cluster))) == [(0, cluster)]
 
 
 # --- shares ----------------------------------------------------------------------------------------
@@ -228,7 +233,7 @@ def test_a_cluster_is_not_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_every_piece_is_in_exactly_one_share(of: int) -> None:
     names = [f"piece-{k}" for k in range(40)]
     shards = [Shard(k, of) for k in range(1, of + 1)]
-    assert all(sum(shard.has(name) for shard in shards) == 1 for name in names)
+    assert all(sum(shard.includes(name) for shard in shards) == 1 for name in names)
     dealt = [name for shard in shards for name in shard.among(names)]
     assert sorted(dealt) == sorted(names)
     for wrong in (0, of + 1, -1):
@@ -247,16 +252,16 @@ def test_a_part_spends_what_the_whole_has() -> None:
     other = whole.part(8.0)
     assert other.left() == 4.0
     other.spend(4.0)
-    assert [x.is_out() for x in (part, other, whole)] == [True, True, True]
-    assert (part.reason(), other.reason(), whole.reason()) == (Why.WORK(10.0),) * 3
-    beside = whole.apart(5.0)
-    assert (beside.left(), beside.is_out(), beside.reason()) == (5.0, False, Why.WORK(5.0))
+    assert [x.is_exhausted() for x in (part, other, whole)] == [True, True, True]
+    assert (part.reason(), other.reason(), whole.reason()) == (ReasonKind.WORK(10.0),) * 3
+    beside = whole.separate(5.0)
+    assert (beside.left(), beside.is_exhausted(), beside.reason()) == (5.0, False, ReasonKind.WORK(5.0))
 
 
 def test_what_is_used_up_exactly_is_used_up() -> None:
     budget = Budget(3.0, 1000.0)
     budget.spend(3.0)
-    assert budget.is_out()
+    assert budget.is_exhausted()
     assert budget.left() == 0.0
     budget.spend(3.0)
     assert budget.left() == 0.0
@@ -264,10 +269,10 @@ def test_what_is_used_up_exactly_is_used_up() -> None:
 
 
 def test_the_clock_of_a_part_is_that_of_the_whole() -> None:
-    begun = Budget(10.0, 1000.0).begun - 5000.0
-    late = Budget(10.0, 1000.0, begun=begun)
-    for meter in (late, late.part(3.0), late.apart(3.0)):
-        for ask in (meter.seconds_left, meter.is_out, meter.effort):
+    started = Budget(10.0, 1000.0).started - 5000.0
+    late = Budget(10.0, 1000.0, started=started)
+    for meter in (late, late.part(3.0), late.separate(3.0)):
+        for ask in (meter.seconds_left, meter.is_exhausted, meter.effort):
             with pytest.raises(BudgetExceeded, match="--timeout") as raised:
                 ask()
             assert (raised.value.exit_code, raised.value.seconds) == (20, 1000.0)
@@ -278,6 +283,6 @@ def test_the_backstop_follows_from_the_work_unless_it_is_said(units: float, seco
     assert Effort(units).meter().seconds == seconds
     said = Effort(units, 7.0)
     assert said.meter().seconds == 7.0
-    assert said.of(3.0) == Effort(3.0, 7.0)
+    assert said.with_units(3.0) == Effort(3.0, 7.0)
     assert 0 < said.meter().effort().timeout <= 7.0  # type: ignore[operator]
     assert said.meter().effort().units == units

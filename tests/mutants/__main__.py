@@ -2,8 +2,9 @@
 
 ``record`` which tests run which lines, ``run`` the faults, ``report`` what came out. A run goes on where
 it stopped: what was tried is in ``results.jsonl``, and is tried again where the function has changed, or
-where it survived and some test has. ``--only`` takes some folders of
-the package, ``--tests`` some test files. ``by-hand`` plants the faults of ``by_hand.toml`` and ``rim/``.
+where it survived and some test has. ``prune`` drops what was tried on another source. ``--only`` takes some
+folders of the package, ``--tests`` some test files. ``by-hand`` plants the faults of ``by_hand.toml`` and
+``rim/``.
 """
 
 import argparse
@@ -16,8 +17,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from mutants import journal
-from mutants.by_hand import listed, plant
-from mutants.choose import choose, faults_of, targets
+from mutants.by_hand import listed, plant, read_results, write_results
+from mutants.choose import choose
 from mutants.edits import Edit
 from mutants.journal import Line
 from mutants.selection import Records, load_records, record_name
@@ -31,7 +32,7 @@ SEED, NUMBER = 1, 1000
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m mutants", description=__doc__)
-    parser.add_argument("action", choices=["record", "run", "report", "list", "by-hand"])
+    parser.add_argument("action", choices=["record", "run", "prune", "report", "list", "by-hand"])
     parser.add_argument("--number", type=int, default=NUMBER, help="faults to choose (about)")
     parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--only", default="", help="folders or files of the package, such as judge/,kernel/")
@@ -53,6 +54,8 @@ def main() -> int:
                     f"{len(records.missing)} test files have no record and are not run: {told}, …", flush=True
                 )
             run(chosen, records, asked.jobs, asked.most)
+        case "prune":
+            journal.write(journal.of_present_source(journal.read().values(), PACKAGE))
         case "by-hand":
             by_hand(asked.only)
         case "list":
@@ -110,17 +113,22 @@ def run(chosen: list[Edit], records: Records, jobs: int, most: int | None) -> No
 
     with ThreadPoolExecutor(jobs) as pool:
         list(pool.map(one, left))
-    there = {edit.key for file in targets(PACKAGE) for edit in faults_of(PACKAGE, file)}
-    journal.write(line for line in journal.read().values() if line.key in there)
+    journal.write(journal.of_present_source(journal.read().values(), PACKAGE))
 
 
 def by_hand(only: str) -> None:
-    """Plant the faults that were thought of, and count for each room how many its tests noticed."""
-    faults = [fault for fault in listed() if fault.file.startswith(tuple(only.split(",")))]
-    rooms: dict[str, Counter[str]] = {}
-    for fault, verdict in plant(faults, ROOT, OUT / "by-hand"):
+    """Plant the faults that were thought of and not caught yet; count for each room what came out."""
+    every, results = listed(), read_results()
+    results = {fault.key: results[fault.key] for fault in every if fault.key in results}
+    faults = [fault for fault in every if fault.file.startswith(tuple(only.split(",")))]
+    left = [fault for fault in faults if results.get(fault.key, "survived") == "survived"]
+    for fault, verdict in plant(left, ROOT, OUT / "by-hand"):
         print(f"{verdict:9} {fault.file}: {fault.before} => {fault.after}", flush=True)
-        rooms.setdefault(fault.room, Counter())[verdict] += 1
+        results[fault.key] = verdict
+        write_results(results.items())
+    rooms: dict[str, Counter[str]] = {}
+    for fault in faults:
+        rooms.setdefault(fault.room, Counter())[results[fault.key]] += 1
     for room, counted in {**rooms, "all": sum(rooms.values(), Counter())}.items():
         print(f"{room:12} {counted.total():4}  " + ", ".join(f"{n} {v}" for v, n in counted.most_common()))
 

@@ -1,11 +1,13 @@
 """Faults that were thought of: one text of a file for another, and the tests that have to notice.
 
 ``by_hand.toml`` lists them by rooms of tests. The tables of ``rim/`` begin with a condition: under which a
-verdict, a count or an exit code may be given. Each condition has the faults that break it.
+verdict, a count or an exit code may be given. Each condition has the faults that break it. The results are in
+``by_hand.jsonl``, a line for each fault: one that was caught is not planted again while its texts stay.
 """
 
+import json
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,7 @@ from mutants.trial import copy_project, run_tests
 
 LISTED = Path(__file__).parent / "by_hand.toml"
 RIM = Path(__file__).parent / "rim"
+RESULTS = Path(__file__).parent / "by_hand.jsonl"
 SECONDS = 300.0
 """Processor time for the tests of a room; beyond that a fault hangs."""
 
@@ -31,6 +34,11 @@ class Fault:
     after: str
     tests: tuple[str, ...]
     equivalent: str = ""
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """The texts by which its result is found: another place in the file, or another room, is the same."""
+        return self.file, self.before, self.after
 
 
 @dataclass(frozen=True)
@@ -74,6 +82,20 @@ def planted(fault: Fault, package: Path) -> tuple[str, str]:
     if text.count(fault.before) != 1:
         raise ValueError(f"{fault.file} has {fault.before!r} {text.count(fault.before)} times, not once")
     return text, text.replace(fault.before, fault.after)
+
+
+def read_results(path: Path = RESULTS) -> dict[tuple[str, str, str], str]:
+    """The verdict for each fault that was planted, by its key; the last of a key counts."""
+    if not path.exists():
+        return {}
+    lines = map(json.loads, path.read_text("utf-8").splitlines())
+    return {(file, before, after): verdict for file, before, after, verdict in lines}
+
+
+def write_results(results: Iterable[tuple[tuple[str, str, str], str]], path: Path = RESULTS) -> None:
+    """Write a line for each fault, in the order of their texts."""
+    lines = (json.dumps([*key, verdict], ensure_ascii=False) for key, verdict in sorted(results))
+    path.write_text("".join(f"{line}\n" for line in lines), "utf-8")
 
 
 def plant(faults: list[Fault], root: Path, folder: Path) -> Iterator[tuple[Fault, str]]:

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 from hashlib import sha256
 from pathlib import Path
 
+from mutants.choose import faults_of
 from mutants.edits import Edit
 from mutants.places import functions_of
 from mutants.trial import Outcome
@@ -52,7 +53,11 @@ def function_digest(edit: Edit, package: Path) -> str:
     content = edit.context
     if edit.file.endswith(".py"):
         content = next((ast.unparse(x) for n, x in functions_of(ast.parse(text)) if n == name), content)
-    return sha256(content.encode()).hexdigest()[:12]
+    return _digest(content)
+
+
+def _digest(text: str) -> str:
+    return sha256(text.encode()).hexdigest()[:12]
 
 
 def tests_digest(root: Path) -> str:
@@ -80,6 +85,26 @@ def is_current(line: Line, edit: Edit, package: Path, among: str) -> bool:
         return False
     settled = line.verdict in ("caught", "hung") or line.key in equivalents()
     return settled or line.among == among
+
+
+def of_present_source(lines: Iterable[Line], package: Path) -> list[Line]:
+    """The lines of faults that can still be made in a function that is as it was when they were tried.
+
+    Of equivalent faults the function may have changed: an argument speaks for them, which a test keeps.
+    """
+    equivalent = equivalents()
+    return [x for x in lines if x.key in equivalent or is_of_present_source(x, package)]
+
+
+def is_of_present_source(line: Line, package: Path) -> bool:
+    """Whether the function of a fault is as it was; without a function, whether the fault can be made."""
+    function, path = line.context.partition("|")[0], package / line.file
+    if not path.is_file():
+        return False
+    if not function or path.suffix != ".py":
+        return any(edit.key == line.key for edit in faults_of(package, Path(line.file)))
+    named = dict(functions_of(ast.parse(path.read_text("utf-8"))))
+    return function in named and line.of == _digest(ast.unparse(named[function]))
 
 
 def write(lines: Iterable[Line], path: Path = RESULTS) -> None:

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from mutants import __main__ as program
+from mutants import journal
 from mutants.__main__ import ROOT, within
-from mutants.by_hand import Fault, conditions, listed, plant, planted
+from mutants.by_hand import Fault, conditions, listed, plant, planted, read_results, write_results
 from mutants.choose import FOLDERS, choose, faults_of, noticing_tests, targets
 from mutants.edits import edits_of, is_fault
 from mutants.places import places_of
@@ -163,3 +165,53 @@ def test_a_fault_that_does_not_fit_is_refused_before_any_is_planted(before: str,
     with pytest.raises(ValueError, match=r"verdict\.py has .* times, not once"):
         next(plant([listed()[0], wrong], ROOT, tmp_path / "copy"))
     assert not (tmp_path / "copy").exists()
+
+
+def line(file: str, function: str, body: str, key: str = "0" * 12) -> journal.Line:
+    digest = journal._digest(ast.unparse(ast.parse(body)))
+    return journal.Line(
+        key, file, 1, "constant", f"{function}|x", "1", "2", "caught", "a test", 1, 1.0, digest, "tests"
+    )
+
+
+def test_a_fault_by_hand_that_was_caught_is_not_planted_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    caught, survived, untried = faults = [Fault("room", "some.py", x, f"not {x}", ()) for x in "abc"]
+    path, planted_now = tmp_path / "results.jsonl", []
+
+    def plant_all(left: list[Fault], *_: object) -> list[tuple[Fault, str]]:
+        planted_now.extend(left)
+        return [(x, "hung") for x in left]
+
+    write_results(
+        {caught.key: "caught", survived.key: "survived", ("gone.py", "x", "y"): "caught"}.items(), path
+    )
+    monkeypatch.setattr(program, "listed", lambda: faults)
+    monkeypatch.setattr(program, "read_results", lambda: read_results(path))
+    monkeypatch.setattr(program, "write_results", lambda results: write_results(results, path))
+    monkeypatch.setattr(program, "plant", plant_all)
+    program.by_hand("")
+    assert planted_now == [survived, untried]
+    assert read_results(path) == {caught.key: "caught", survived.key: "hung", untried.key: "hung"}
+
+
+def test_only_results_about_the_present_source_count(tmp_path: Path) -> None:
+    body = "def one():\n    return 1\n"
+    (tmp_path / "some.py").write_text(f"# moved down\n\n{body}", "utf-8")
+    tried = line("some.py", "one", body)
+    other = [
+        line("some.py", "one", body.replace("1", "3")),
+        line("some.py", "two", body),
+        line("none.py", "one", body),
+        line("some.py", "", body),
+    ]
+    assert journal.of_present_source([tried, *other], tmp_path) == [tried]
+    [made, *_] = edits_of("some.py", (tmp_path / "some.py").read_text("utf-8"))
+    outside = line("some.py", "", body, made.key)
+    assert journal.of_present_source([outside], tmp_path) == [outside]
+
+
+def test_an_argument_stands_for_an_equivalent_fault_whatever_its_function(tmp_path: Path) -> None:
+    key = next(iter(journal.equivalents()))
+    assert len(journal.of_present_source([line("none.py", "one", "x", key)], tmp_path)) == 1

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache
 
-from asking import prove
 from definition import of_values
-from roadproof.engines.prove.prover import Result
+from engine_calls import prove
+from roadproof.engines.prove.prover import ProverResult
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.countermodel import Countermodel
 from roadproof.library.elaborate import read_claim
@@ -86,7 +86,7 @@ def specification(set_name: str = "base") -> Specification:
     return bundled_library().select(set_name)
 
 
-def settle(claim: str, set_name: str = "base", units: float = 10.0) -> Result:
+def settle(claim: str, set_name: str = "base", units: float = 10.0) -> ProverResult:
     return prove(specification(set_name), spelled(claim), Effort(units))
 
 
@@ -129,7 +129,7 @@ def _truth(atom: f.Application, instant, countermodel: Countermodel, rigid: Mapp
 
 
 def _spread(countermodel: Countermodel, truths: list[bool]) -> TruthSet:
-    later = truths if countermodel.held == "before" else [*truths[1:], truths[-1]]
+    later = truths if countermodel.interpolation == "before" else [*truths[1:], truths[-1]]
     return from_switches(zip([x.time for x in countermodel.instants], truths, later, strict=True))
 
 

@@ -261,7 +261,7 @@ def is_false_there(tree, found: Countermodel) -> bool:
     trace: list[Segment] = []
     states = [values_of(instant.values) for instant in found.instants]
     for number, state in enumerate(states):
-        between = state if found.held == "before" else states[min(number + 1, len(states) - 1)]
+        between = state if found.interpolation == "before" else states[min(number + 1, len(states) - 1)]
         trace += [Segment(True, state), Segment(False, between)]
     names = {"L": "L", "l": "l"}
     return (not speaks or is_road(road)) and not truth(tree, road, trace, names)

@@ -34,10 +34,11 @@ from proving.claims import (
     specification,
 )
 from proving.on_roads import claim_text, is_false_there, is_true_here, random_claim, random_road, random_trace
-from roadproof.engines.prove.doubt import NO_REMEDY, Cause, Doubt, Stop, doubt_of
-from roadproof.engines.solve.smt import ask
+from rejection import rejection_reason
+from roadproof.engines.prove.unknown import NO_REMEDY, Cause, StopPoint, UnknownReport, unknown_report
+from roadproof.engines.solve.smt import check_sat
 from roadproof.evidence.atoms import Atoms
-from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
+from roadproof.evidence.certificate_file import certificate_data, read_certificate_data
 from roadproof.frontends.api.checking import check
 from roadproof.frontends.cli.main import main
 from roadproof.library.bind import default_values
@@ -57,9 +58,9 @@ library = specification().library
 def test_proves_what_is_valid(claim):
     result = settle(claim)
     assert result.verdict in PROVED, result.reason
-    assert refusal(result.certificate, library, ask) is None
+    assert rejection_reason(result.certificate, library, check_sat) is None
     for title, query in result.certificate.queries:
-        assert ask(query, "cvc5", Effort(10).meter()) == "unsat", title
+        assert check_sat(query, "cvc5", Effort(10).meter()) == "unsat", title
 
 
 @pytest.mark.parametrize("claim", INVALID)
@@ -196,8 +197,8 @@ def test_verdicts_of_random_claims(claim, tried):
     seen[str(result.verdict)] += 1
     if result.verdict in PROVED:
         assert result.certificate is not None
-        assert refusal(result.certificate, specification().library, ask) is None
-        assert refusal(result.certificate, specification().library, by_cvc5) is None
+        assert rejection_reason(result.certificate, specification().library, check_sat) is None
+        assert rejection_reason(result.certificate, specification().library, by_cvc5) is None
         for trace in tried:
             assert is_true_on(claim, trace)
     elif result.verdict is Verdict.REFUTED:
@@ -209,7 +210,7 @@ def test_verdicts_of_random_claims(claim, tried):
 
 
 def by_cvc5(query: str) -> str:
-    return ask(query, "cvc5", Effort(20).meter())
+    return check_sat(query, "cvc5", Effort(20).meter())
 
 
 def test_random_claims_were_mostly_decided():
@@ -260,8 +261,12 @@ small_specification = bundled_library().select("base")
 AT_P, AT_Q = "atLane(SV,L)", "atLane(POV,L)"
 
 
-def doubt(claim: str, stop: Stop = Stop.WORK, said: tuple[str, ...] = (), units: float = 60) -> Doubt:
-    return doubt_of(read_claim(small_specification, claim), said, stop, Effort(units), True, "the detail")
+def doubt(
+    claim: str, stop: StopPoint = StopPoint.WORK, said: tuple[str, ...] = (), units: float = 60
+) -> UnknownReport:
+    return unknown_report(
+        read_claim(small_specification, claim), said, stop, Effort(units), True, "the detail"
+    )
 
 
 @pytest.mark.parametrize(
@@ -281,7 +286,7 @@ def doubt(claim: str, stop: Stop = Stop.WORK, said: tuple[str, ...] = (), units:
 )
 def test_the_form_of_a_claim_tells_the_cause(claim, cause):
     assert doubt(claim).cause is cause
-    assert doubt(claim, Stop.ROUNDS).cause is cause
+    assert doubt(claim, StopPoint.ROUNDS).cause is cause
     assert doubt(claim, units=1).cause is Cause.WORK
 
 
@@ -296,26 +301,28 @@ def test_the_form_of_a_claim_tells_the_cause(claim, cause):
     ],
 )
 def test_of_motions_also_what_is_assumed_tells_it(claim, said, cause):
-    found = doubt(claim, Stop.FACTS, said)
+    found = doubt(claim, StopPoint.FACTS, said)
     assert found.cause is cause
     assert "traces" not in found.tried
 
 
-@pytest.mark.parametrize("stop", [Stop.CLOCK, Stop.PROCESS, Stop.SOLVER, Stop.LANES, Stop.CERTIFICATE])
+@pytest.mark.parametrize(
+    "stop", [StopPoint.CLOCK, StopPoint.PROCESS, StopPoint.SOLVER, StopPoint.LANES, StopPoint.CERTIFICATE]
+)
 def test_where_a_search_stopped_by_itself_the_form_does_not_matter(stop):
     assert doubt(f"G F {AT_P} -> F G {AT_P}", stop).cause == Cause(stop)
 
 
 @pytest.mark.parametrize("cause", Cause)
 def test_every_cause_says_what_was_tried_and_what_helps(cause):
-    found = Doubt(cause, ("proof",), 60, "the detail")
-    schema = validator("verdicts.json").schema["$defs"]["doubt"]
+    found = UnknownReport(cause, ("proof",), 60, "the detail")
+    schema = validator("verdicts.json").schema["$defs"]["unknown_report_data"]
     assert cause in schema["properties"]["cause"]["enum"]
     if cause in (Cause.CLOCK, Cause.PROCESS):
         assert str(found) == "the detail"
     else:
         assert "tried: a proof" in str(found)
-        assert (NO_REMEDY if found.remedy is None else found.remedy.told) in str(found)
+        assert (NO_REMEDY if found.remedy is None else found.remedy.text) in str(found)
         assert ("more work may help" in str(found)) == found.effort_helps
 
 
@@ -366,7 +373,7 @@ def test_premises_are_those_of_the_certificate(claim, limits, facts, unused):
     answer, certificate = proved(claim)
     assumed = certificate.assumed
     assert (assumed.limits, len(assumed.axioms), assumed.unused) == (limits, facts, unused)
-    assert refusal(certificate, bundled_library(), ask) is None
+    assert rejection_reason(certificate, bundled_library(), check_sat) is None
     entry = answer.as_data()["verdicts"][0]
     assert entry["premises"] == [*limits, *map(str, assumed.axioms)]
     assert answer.rows()[0]["premises"] == "; ".join(entry["premises"])
@@ -394,13 +401,13 @@ def test_limits_of_a_model_are_told_apart():
 def test_a_limit_that_is_used_cannot_be_called_unused():
     _, certificate = proved(f"assuming motion, {LIMIT}: a_lon(SV) <= 4 m/s^2")
     forged = replace(certificate, assumed=replace(certificate.assumed, unused=(LIMIT,)))
-    assert refusal(forged, bundled_library(), ask) is not None
+    assert rejection_reason(forged, bundled_library(), check_sat) is not None
 
 
 def test_only_a_limit_that_is_said_can_be_unused():
     _, certificate = proved(f"assuming motion, {LIMIT}: v_lon(SV) <= 4 m/s -> v_lon(SV) <= 5 m/s")
     forged = replace(certificate, assumed=replace(certificate.assumed, unused=(LIMIT, OTHER)))
-    assert "the claim does not say these limits" in refusal(forged, bundled_library(), ask)
+    assert "the claim does not say these limits" in rejection_reason(forged, bundled_library(), check_sat)
 
 
 def test_a_certificate_of_earlier_has_all_limits_as_premises():

@@ -9,22 +9,24 @@ from random import Random
 import pytest
 
 import roadproof as rp
-from asking import prove
 from cli.test_schemas import validator
+from engine_calls import prove
 from extensions.kernel.needs import needs_coq
+from rejection import rejection_reason
 from roadproof.engines.prove import lasso, prover
 from roadproof.engines.prove.induction import inductions
-from roadproof.engines.search.settle import settle
-from roadproof.engines.solve.smt import ask
+from roadproof.engines.search.decide import decide_claim
+from roadproof.engines.solve.smt import check_sat
 from roadproof.errors import InputError
-from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
+from roadproof.evidence.certificate_file import certificate_data, read_certificate_data
 from roadproof.evidence.countermodel import Countermodel, Instant, Loop, read_trace, trace_data
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.refutation import fault_of, judge_trace
 from roadproof.frontends.api.checking import check
+from roadproof.library.assumption import Axiom
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.motion import Axiom, axiom_formula
+from roadproof.library.motion import axiom_formula
 from roadproof.logic import formula as f
 from roadproof.logic import motion
 from roadproof.logic import terms as t
@@ -58,7 +60,7 @@ def test_a_claim_is_proved_and_its_certificate_is_derived_again(claim, schema):
     answer, certificate = certificate_of(claim)
     assert {x.schema for x in certificate.assumed.axioms} == {schema}
     for solver in ("z3", "cvc5"):
-        assert refusal(certificate, library, partial(ask, solver=solver)) is None
+        assert rejection_reason(certificate, library, partial(check_sat, solver=solver)) is None
     data = certificate_data(certificate)
     assert not [*validator("certificate.json").iter_errors(data)]
     assert read_certificate_data(data, "it") == certificate
@@ -168,8 +170,10 @@ def test_a_certificate_with_another_induction_is_refused():
         replace(axiom, arguments=("atLane(POV,L)", "1 s", "1 s")),
     ):
         forged = replace(certificate, assumed=replace(certificate.assumed, axioms=(other,)))
-        assert refusal(forged, library, ask) is not None
-    assert refusal(replace(certificate, assumed=replace(certificate.assumed, axioms=())), library, ask)
+        assert rejection_reason(forged, library, check_sat) is not None
+    assert rejection_reason(
+        replace(certificate, assumed=replace(certificate.assumed, axioms=())), library, check_sat
+    )
 
 
 def test_a_mutant_of_the_schema_is_noticed_by_who_has_the_right_one(monkeypatch):
@@ -178,7 +182,7 @@ def test_a_mutant_of_the_schema_is_noticed_by_who_has_the_right_one(monkeypatch)
     with monkeypatch.context() as patch:
         patch.setattr(motion, "_check", lambda time: None)
         _, certificate = certificate_of(claim)
-    assert refusal(certificate, library, ask) is not None
+    assert rejection_reason(certificate, library, check_sat) is not None
 
 
 @needs_coq
@@ -226,14 +230,14 @@ def read(claim):
     return read_claim(HOME, claim).formula
 
 
-def trace(*speeds, loop=None, held="before"):
+def trace(*speeds, loop=None, interpolation="before"):
     """Instants a second apart; a speed may be a pair: at the instant and after it."""
     instants = []
     for k, speed in enumerate(speeds):
         at, after = speed if isinstance(speed, tuple) else (speed, None)
         own = None if after is None else {"v_lon(SV)": Fraction(after)}
         instants.append(Instant(Fraction(k), {"v_lon(SV)": Fraction(at)}, {}, own))
-    return Countermodel(tuple(instants), {}, held, None, loop)
+    return Countermodel(tuple(instants), {}, interpolation, None, loop)
 
 
 def loop(start, period):
@@ -260,7 +264,9 @@ def test_a_loop_that_fits_no_instants(fault):
 
 
 def test_a_loop_that_takes_the_state_of_the_instant_after():
-    assert "of the one before" in fault_of(trace(11, 5, loop=loop(0, 2), held="after"), read(ALTERNATING), {})
+    assert "of the one before" in fault_of(
+        trace(11, 5, loop=loop(0, 2), interpolation="after"), read(ALTERNATING), {}
+    )
 
 
 def test_a_size_that_changes_after_an_instant():
@@ -271,7 +277,7 @@ def test_a_size_that_changes_after_an_instant():
 
 
 @pytest.mark.parametrize(
-    "made", [trace(11, 5), trace(11, (5, 11), loop=loop(1, 3)), trace((1, 2), 3, held="after")]
+    "made", [trace(11, 5), trace(11, (5, 11), loop=loop(1, 3)), trace((1, 2), 3, interpolation="after")]
 )
 def test_written_and_read_again(made):
     data = json.loads(json.dumps(trace_data(made)))
@@ -352,7 +358,9 @@ def test_a_conclusion_that_is_a_negation(claim: str) -> None:
 
 
 def vacuous(claim: str, *said: str) -> bool:
-    found = settle(SPECIFICATION, read_claim(SPECIFICATION, claim), Effort(3), said=("motion", *said))
+    found = decide_claim(
+        SPECIFICATION, read_claim(SPECIFICATION, claim), Effort(3), assumed=("motion", *said)
+    )
     assert found.result.holds
     return found.verdict is Verdict.VACUOUS
 

@@ -14,26 +14,26 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import roadproof as rp
-from asking import prove as prove_text
+from engine_calls import prove as prove_text
 from evidence.folders import answer, read, write
 from proving.claims import specification as known_specification
-from roadproof.engines.prove.motion import prove_of_motions, stages
+from rejection import rejection_reason
+from roadproof.engines.prove.motion import axiom_choices, prove_for_motions
 from roadproof.engines.prove.properties import Task, name_of_claim, template_properties
 from roadproof.engines.prove.prover import prove
-from roadproof.engines.search import settle as settling
-from roadproof.engines.search.settle import settle
-from roadproof.engines.solve.smt import ask
-from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
+from roadproof.engines.search import decide as settling
+from roadproof.engines.search.decide import decide_claim
+from roadproof.engines.solve.smt import check_sat
+from roadproof.evidence.certificate_file import certificate_data, read_certificate_data
 from roadproof.evidence.finding import Acceptance, Finding
-from roadproof.library import motion as spec_motion
+from roadproof.library.assumption import SCHEMAS, Assumption, Axiom
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.motion import SCHEMAS, Assumption, Axiom
 from roadproof.logic import motion
 from roadproof.logic import terms as t
 from roadproof.logic.rewrite import with_values
-from roadproof.questions.data import QUESTION
+from roadproof.questions.question import QUESTION
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact import judge
 from roadproof.verdict import Verdict
@@ -61,36 +61,36 @@ MOVING = [
 @cache
 def proof(claim: str, said: tuple[str, ...] = ("motion",)) -> Any:
     """The certificate of a claim about motions, as data."""
-    result = prove_of_motions(specification, read_claim(specification, claim), said, Effort(20))
+    result = prove_for_motions(specification, read_claim(specification, claim), said, Effort(20))
     assert result.verdict is Verdict.PROVED, result.reason
     assert result.certificate is not None
     return certificate_data(result.certificate)
 
 
 def refused(data: Any) -> str | None:
-    return refusal(read_certificate_data(data, "it"), specification.library, answer)
+    return rejection_reason(read_certificate_data(data, "it"), specification.library, answer)
 
 
 @pytest.mark.parametrize(("claim", "said"), MOVING)
 def test_a_proof_of_motions_is_accepted_by_two_solvers(claim, said):
     certificate = read_certificate_data(json.loads(json.dumps(proof(claim, said))), "it")
     assert certificate.claim == claim
-    assert certificate.assumed.said == said
+    assert certificate.assumed.texts == said
     assert certificate.assumed.axioms
     for solver in ("z3", "cvc5"):
-        asked = [ask(query, solver, Effort(20).meter()) for _, query in certificate.queries]
+        asked = [check_sat(query, solver, Effort(20).meter()) for _, query in certificate.queries]
         assert {*asked} == {"unsat"}
     assert refused(proof(claim, said)) is None
 
 
 def test_all_schemas_are_used():
     used = {x["schema"] for claim, said in MOVING for x in proof(claim, said)["axioms"]}
-    assert used == {*spec_motion.SCHEMAS}
+    assert used == {*SCHEMAS}
 
 
 @pytest.mark.parametrize(("claim", "said"), [x for x in MOVING if x[0] != LEAVES])
 def test_the_same_is_refuted_by_a_trace_where_nothing_is_assumed(claim, said):
-    found = settle(specification, read_claim(specification, claim), Effort(5), seek_drive=False)
+    found = decide_claim(specification, read_claim(specification, claim), Effort(5), seek_drive=False)
     assert (found.verdict, found.refuted_by) == (Verdict.REFUTED, "trace")
 
 
@@ -103,7 +103,7 @@ def test_what_needs_no_motion_is_proved_without():
 
 def test_a_premise_that_no_motion_has_makes_a_claim_vacuous():
     claim = "(G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) and F s(SV) > s(POV)) -> danger(SV,POV)"
-    found = settle(specification, read_claim(specification, claim), Effort(5), said=("motion",))
+    found = decide_claim(specification, read_claim(specification, claim), Effort(5), assumed=("motion",))
     assert found.verdict is Verdict.VACUOUS
     assert refused(certificate_data(found.result.certificate)) is None
 
@@ -115,10 +115,10 @@ FALSE = "v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) <= s(POV)"
 
 def test_only_a_drive_refutes_a_claim_about_motions():
     query = read_claim(specification, FALSE)
-    with_drive = settle(specification, query, Effort(10), said=("motion",))
+    with_drive = decide_claim(specification, query, Effort(10), assumed=("motion",))
     assert (with_drive.verdict, with_drive.refuted_by) == (Verdict.REFUTED, "drive")
     assert with_drive.result.countermodel is None
-    without = settle(specification, query, Effort(2), seek_drive=False, said=("motion",))
+    without = decide_claim(specification, query, Effort(2), seek_drive=False, assumed=("motion",))
     assert without.verdict is Verdict.UNKNOWN
     assert without.refuted_by is None
     assert "no drive that refutes it was looked for" in without.result.reason
@@ -126,7 +126,7 @@ def test_only_a_drive_refutes_a_claim_about_motions():
 
 def test_a_drive_refutes_within_the_limits_that_are_said():
     query = read_claim(specification, "v_lon(SV) <= 20 m/s -> G[0, 2 s] v_lon(SV) <= 23 m/s")
-    found = settle(specification, query, Effort(10), said=("motion", LIMIT))
+    found = decide_claim(specification, query, Effort(10), assumed=("motion", LIMIT))
     assert found.refuted_by == "drive"
     assert found.drive.file.formula.startswith(f"not (G {LIMIT} -> ")
     assert all(piece.a_lon <= 2 for piece in found.drive.file.drive.vehicles["SV"].pieces)
@@ -134,15 +134,15 @@ def test_a_drive_refutes_within_the_limits_that_are_said():
 
 def test_a_trace_with_all_facts_at_its_instants_refutes_nothing():
     query = read_claim(specification, FALSE)
-    for axioms in stages(specification, query):
+    for axioms in axiom_choices(specification, query):
         result = prove(specification, query, Effort(0.5), assumed=Assumption(("motion",), axioms))
         assert (result.verdict, result.countermodel) == (Verdict.UNKNOWN, None)
 
 
 def test_without_a_proof_and_without_a_drive_it_is_in_doubt(monkeypatch):
-    monkeypatch.setattr(settling._Settler, "_quick", lambda *x: None)
-    monkeypatch.setattr(settling._Settler, "_searched", lambda *x: None)
-    found = settle(specification, read_claim(specification, FALSE), Effort(2), said=("motion",))
+    monkeypatch.setattr(settling._Decider, "_quick", lambda *x: None)
+    monkeypatch.setattr(settling._Decider, "_searched", lambda *x: None)
+    found = decide_claim(specification, read_claim(specification, FALSE), Effort(2), assumed=("motion",))
     assert found.verdict is Verdict.UNKNOWN
 
 
@@ -307,10 +307,10 @@ def test_a_rate_that_is_none_proves_nothing_to_others(monkeypatch):
     query = read_claim(specification, claim)
     with monkeypatch.context() as patch:
         patch.setattr(motion, "RATES", {**motion.RATES, "s": "v_lat"})
-        result = prove_of_motions(specification, query, ("motion",), Effort(5))
+        result = prove_for_motions(specification, query, ("motion",), Effort(5))
         assert result.verdict is Verdict.PROVED
     assert refused(certificate_data(result.certificate)) is not None
-    assert prove_of_motions(specification, query, ("motion",), Effort(2)).verdict is Verdict.UNKNOWN
+    assert prove_for_motions(specification, query, ("motion",), Effort(2)).verdict is Verdict.UNKNOWN
 
 
 def test_rates_are_of_the_list_of_signals():

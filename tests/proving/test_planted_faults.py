@@ -15,13 +15,13 @@ from proving.claims import (
     specification,
 )
 from proving.on_roads import is_road
+from rejection import rejection_reason
 from roadproof.engines.prove import countermodel, grounding, prover
 from roadproof.engines.prove.grounding import Grounding, Window
 from roadproof.engines.prove.search import InstanceSearch
 from roadproof.engines.prove.states import StateChecker
-from roadproof.engines.solve.smt import Session, ask
+from roadproof.engines.solve.smt import Session, check_sat
 from roadproof.evidence import refutation
-from roadproof.evidence.certificate import refusal
 from roadproof.logic import formula as f
 from roadproof.verdict import Verdict
 from roadproof.world.road import Lanelet, Road
@@ -179,13 +179,15 @@ def test_a_fault_in_the_finder_proves_nothing_false(fault, monkeypatch):
 def unknown_is_proved(monkeypatch):
     """A derived query that z3 cannot answer counts as answered unsat."""
     everything_unsat(monkeypatch)
-    monkeypatch.setattr(prover, "ask", lambda query, **limits: "unsat")
+    monkeypatch.setattr(prover, "check_sat", lambda query, **limits: "unsat")
 
 
 def lemmas_not_asked(monkeypatch):
     """What the finder takes for a lemma is not derived and asked again."""
     every_state_is_impossible(monkeypatch)
-    monkeypatch.setattr(prover, "ask", lambda query, **limits: "unsat" if "QF_NRA" in query else ask(query))
+    monkeypatch.setattr(
+        prover, "check_sat", lambda query, **limits: "unsat" if "QF_NRA" in query else check_sat(query)
+    )
 
 
 LAST_FAULTS = [unknown_is_proved, lemmas_not_asked]
@@ -196,7 +198,7 @@ def wrong_proof() -> str | None:
     for claim in TEMPTING:
         result = settle(claim, units=UNITS)
         if result.verdict in PROVED:
-            assert refusal(result.certificate, specification().library, ask) is not None
+            assert rejection_reason(result.certificate, specification().library, check_sat) is not None
             return claim
     return None
 
@@ -212,7 +214,7 @@ def test_a_fault_in_the_last_check_is_caught(fault, monkeypatch):
 )
 @pytest.mark.parametrize("claim", ["F F p -> F p", "aheadOf(SV,POV) -> not aheadOf(POV,SV)"])
 def test_a_proof_counts_only_once_its_derived_queries_are_unsat(claim, answer, verdict, monkeypatch):
-    monkeypatch.setattr(prover, "ask", lambda query, **limits: answer)
+    monkeypatch.setattr(prover, "check_sat", lambda query, **limits: answer)
     result = settle(claim)
     assert result.verdict is verdict
     assert result.certificate is None
@@ -236,7 +238,9 @@ def wrong_side_held(monkeypatch):
     monkeypatch.setattr(
         refutation,
         "_after",
-        lambda part, truths, trace: true_after(part, truths, replace(trace, held=turned[trace.held])),
+        lambda part, truths, trace: true_after(
+            part, truths, replace(trace, interpolation=turned[trace.interpolation])
+        ),
     )
 
 
@@ -262,7 +266,7 @@ def lanelets_anywhere(monkeypatch):
         ]
         return Road("heap", tuple(heap), frozenset())
 
-    monkeypatch.setattr(countermodel, "lay_road", lay)
+    monkeypatch.setattr(countermodel, "build_road", lay)
     monkeypatch.setattr(refutation, "check_lanelets", lambda lanelets, where: None)
 
 

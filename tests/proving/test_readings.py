@@ -5,17 +5,18 @@ from dataclasses import replace
 import pytest
 
 from extensions.kernel.needs import needs_coq
+from rejection import rejection_reason
 from roadproof.engines.prove import prover
-from roadproof.engines.prove.doubt import Stop
 from roadproof.engines.prove.prover import prove
-from roadproof.engines.solve.recall import ask
-from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
-from roadproof.evidence.sites import Lemma
+from roadproof.engines.prove.unknown import StopPoint
+from roadproof.engines.solve.recall import check_sat
+from roadproof.evidence.certificate_file import certificate_data, read_certificate_data
+from roadproof.evidence.sites import StateLemma
 from roadproof.extensions.kernel.accept import judge, prepare
 from roadproof.extensions.kernel.coq import ready
+from roadproof.library.assumption import NOTHING
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.motion import NOTHING
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
@@ -33,7 +34,7 @@ NOT_VALID = ["G F {} -> F G {}", "F {} -> G F {}", "G F G F {} -> F G {}"]
 
 
 def answer(script):
-    return ask(script, meter=Effort(5).meter())
+    return check_sat(script, meter=Effort(5).meter())
 
 
 def decided(claim):
@@ -48,7 +49,7 @@ def test_a_scenario_that_is_met_twice_is_a_predicate(shape):
         assert found.certificate.reading in ("names", "states")
         stored = read_certificate_data(certificate_data(found.certificate), "here")
         assert stored.reading == found.certificate.reading
-        assert refusal(stored, LIBRARY, answer) is None
+        assert rejection_reason(stored, LIBRARY, answer) is None
 
 
 @pytest.mark.parametrize("scenario", [*SCENARIOS[:2], "danger(SV,POV)", "dangerArises(SV,POV)"])
@@ -79,7 +80,7 @@ def test_a_model_in_which_definitions_are_predicates_is_no_answer():
     """Nothing is said of states by a definition about several instants, whether it is true or false."""
     query = read_claim(HOME, f"F {SCENARIOS[1]} -> G {SCENARIOS[1]}")
     found = prover._prove(HOME, query, Effort(2), NOTHING, "names")
-    assert (found.verdict, found.stop) == (Verdict.UNKNOWN, Stop.PLACE)
+    assert (found.verdict, found.stop) == (Verdict.UNKNOWN, StopPoint.PLACE)
 
 
 def test_different_scenarios_are_different_predicates():
@@ -91,14 +92,14 @@ def test_a_certificate_is_refused_in_another_reading():
     certificate = decided(BY_NAMES[0].format(SCENARIOS[1], SCENARIOS[1])).certificate
     assert certificate.reading == "names"
     for reading in ("states", "lanelets"):
-        assert refusal(replace(certificate, reading=reading), LIBRARY, answer) is not None
+        assert rejection_reason(replace(certificate, reading=reading), LIBRARY, answer) is not None
 
 
 def test_a_lemma_about_several_instants_is_refused():
     certificate = decided(BY_NAMES[0].format(SCENARIOS[1], SCENARIOS[1])).certificate
     name = "scenario_4(SV, POV, L)"
-    forged = replace(certificate, lemmas=(Lemma(((name, True), (name, False)), ("0",)),))
-    assert "speaks of several instants" in refusal(forged, LIBRARY, answer)
+    forged = replace(certificate, lemmas=(StateLemma(((name, True), (name, False)), ("0",)),))
+    assert "speaks of several instants" in rejection_reason(forged, LIBRARY, answer)
 
 
 @needs_coq

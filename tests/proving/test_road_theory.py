@@ -11,12 +11,12 @@ import pytest
 from extensions.kernel.needs import needs_coq
 from planting import plant
 from proving.on_roads import random_road
+from rejection import rejection_reason
 from roadproof.engines.prove.prover import prove
-from roadproof.engines.solve.recall import ask
+from roadproof.engines.solve.recall import check_sat
 from roadproof.evidence import road_axioms
-from roadproof.evidence.certificate import refusal
 from roadproof.evidence.refutation import fault_of
-from roadproof.evidence.road_axioms import AXIOMS, ZONES, membership, true_of_roads
+from roadproof.evidence.road_axioms import AXIOMS, ZONES, membership, road_clauses
 from roadproof.extensions.kernel.accept import judge as judge_by_kernel
 from roadproof.extensions.kernel.accept import prepare
 from roadproof.extensions.kernel.coq import ready
@@ -25,7 +25,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.runtime.budget import Effort
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road, names_of
@@ -65,7 +65,7 @@ def decided(claim):
 
 
 def answer(script):
-    return ask(script, meter=Effort(5).meter())
+    return check_sat(script, meter=Effort(5).meter())
 
 
 def satisfiable(facts, clauses):
@@ -150,14 +150,14 @@ def test_the_box_of_motions_is_that_of_traces():
 def test_every_road_obeys_every_axiom():
     for road in roads():
         facts = [*facts_of(road)]
-        assert satisfiable(facts, true_of_roads([(x, y) for x, y, _ in facts])), road
+        assert satisfiable(facts, road_clauses([(x, y) for x, y, _ in facts])), road
 
 
 @pytest.mark.parametrize("name", IMPOSSIBLE)
 def test_an_axiom_excludes_what_no_road_has_and_no_other_axiom_does(name):
     facts = IMPOSSIBLE[name]
     known = [(x, y) for x, y, _ in facts]
-    assert not satisfiable(facts, true_of_roads(known))
+    assert not satisfiable(facts, road_clauses(known))
     others = [x for x in AXIOMS if x.name != name]
     assert satisfiable(facts, [clause for x in others for clause in x.instances(known)])
 
@@ -170,7 +170,7 @@ def test_a_claim_that_rests_on_an_axiom_is_proved_and_a_near_miss_refuted(name):
     claim, near = CLAIMS[name]
     proved = decided(claim)
     assert proved.verdict is Verdict.PROVED
-    assert refusal(proved.certificate, LIBRARY, answer) is None
+    assert rejection_reason(proved.certificate, LIBRARY, answer) is None
     refuted = decided(near)
     assert refuted.verdict is Verdict.REFUTED
     assert fault_of(refuted.countermodel, read_claim(HOME, near).formula, LIBRARY.bounds) is None
@@ -191,7 +191,7 @@ def test_without_its_axiom_nothing_is_proved_and_the_certificate_refused(monkeyp
     weaker = tuple(replace(x, instances=lambda _: ()) if x.name == name else x for x in AXIOMS)
     monkeypatch.setattr(road_axioms, "AXIOMS", weaker)
     assert decided(claim).verdict is Verdict.UNKNOWN
-    assert refusal(certificate, LIBRARY, answer) is not None
+    assert rejection_reason(certificate, LIBRARY, answer) is not None
 
 
 @pytest.mark.parametrize(

@@ -9,21 +9,20 @@ from random import Random
 import pytest
 
 import roadproof as rp
-from asking import prove
+from engine_calls import prove
 from extensions.drivers.read import specification as driver_specification
 from proving.claims import settle, specification
 from proving.on_roads import is_road, neighbours
 from roadproof.engines.prove import countermodel, prover
-from roadproof.engines.prove.countermodel import place
-from roadproof.engines.prove.doubt import Stop
+from roadproof.engines.prove.countermodel import place_vehicles
 from roadproof.engines.prove.grounding import Grounding
-from roadproof.engines.prove.roads import ZONES, Box, Layout, lay_road, roster_for
-from roadproof.engines.prove.search import GaveUp, Model
-from roadproof.engines.prove.states import is_plain, reason
+from roadproof.engines.prove.roads import ZONES, Box, RoadLayout, build_road, roster_for
+from roadproof.engines.prove.search import Model, NoAnswer
+from roadproof.engines.prove.states import deciding_atoms, is_propositional
+from roadproof.engines.prove.unknown import StopPoint
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
-from roadproof.extensions.drivers.lemmas import lemmas_for
-from roadproof.extensions.drivers.models import models_for
+from roadproof.extensions.drivers.models import lemmas_for, models_for
 from roadproof.library.elaborate import read_claim
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -60,23 +59,23 @@ def test_what_holds_anyway_is_not_instantiated(monkeypatch):
 )
 def test_few_lanes_are_tried_once_where_quantifiers_over_lanes_are_open(claim, few, monkeypatch):
     looked = []
-    true_search = prover._Attempt._search
+    true_search = prover._ProofAttempt._search
 
-    def search(self, goal, names, wishful, roster=None):
-        looked.append((wishful, roster))
-        return true_search(self, goal, names, wishful, roster)
+    def search(self, goal, names, prefer_known_times, roster=None):
+        looked.append((prefer_known_times, roster))
+        return true_search(self, goal, names, prefer_known_times, roster)
 
-    monkeypatch.setattr(prover._Attempt, "_search", search)
+    monkeypatch.setattr(prover._ProofAttempt, "_search", search)
     settle(claim, units=2)
     assert [n for n, (_, roster) in enumerate(looked) if roster is not None] == few
-    turns = [wishful for wishful, roster in looked if roster is None]
-    assert turns == [wishful for wishful, _ in prover.TURNS[: len(turns)]]
+    turns = [prefer_known_times for prefer_known_times, roster in looked if roster is None]
+    assert turns == [prefer_known_times for prefer_known_times, _ in prover.TURNS[: len(turns)]]
 
 
 def test_a_road_of_few_lanes_proves_nothing(monkeypatch):
     """What holds on it may fail on a larger one."""
     found = []
-    true_run = prover._Attempt._run
+    true_run = prover._ProofAttempt._run
 
     def run(self, search, meter):
         made = true_run(self, search, meter)
@@ -84,17 +83,17 @@ def test_a_road_of_few_lanes_proves_nothing(monkeypatch):
             found.append(made)
         return made
 
-    monkeypatch.setattr(prover._Attempt, "_run", run)
+    monkeypatch.setattr(prover._ProofAttempt, "_run", run)
     monkeypatch.setattr(prover, "TURNS", ((False, 0.0), (True, 0.0)))
     assert settle("(every K in lanes: F atLane(SV,K)) -> F p").verdict is Verdict.UNKNOWN
-    assert found == [GaveUp("no countermodel on a road of few lanes", Stop.PLACE)]
+    assert found == [NoAnswer("no countermodel on a road of few lanes", StopPoint.PLACE)]
 
 
 def test_where_no_road_is_found_nothing_is_refuted(monkeypatch):
     """Not even where the claim is false without any road: there is none of that kind."""
     claim = "some K in lanes: G atLane(SV,K)"
     assert settle(claim, units=2).verdict is Verdict.REFUTED
-    monkeypatch.setattr(countermodel, "lay_road", lambda layout: None)
+    monkeypatch.setattr(countermodel, "build_road", lambda layout: None)
     assert settle(claim, units=2).verdict is Verdict.UNKNOWN
 
 
@@ -110,7 +109,7 @@ def test_vehicles_of_which_the_same_is_said_stand_together():
     formula = f.And(tuple(f.Occupies(name, "l") for name in "ABC"))
     sizes = {state.symbol(t.Size(size, name)): Fraction(2) for name in "ABC" for size in ("length", "width")}
     model = Model({}, {Fraction(0): {}}, {Fraction(0): said}, {}, {})
-    (found,) = place(formula, Atoms(), model, sizes)
+    (found,) = place_vehicles(formula, Atoms(), model, sizes)
     assert sorted("ABC", key=lambda name: found[f"s({name})"]) == ["B", "A", "C"]
 
 
@@ -162,8 +161,8 @@ def test_what_is_told_is_true_and_enough():
         formula = random_formula(rng, 4)
         for truths in all_truths():
             found = value(formula, truths)
-            assert reason(formula, not found, truths) is None
-            why = reason(formula, found, truths)
+            assert deciding_atoms(formula, not found, truths) is None
+            why = deciding_atoms(formula, found, truths)
             assert why is not None
             assert why.items() <= truths.items()
             fewer += len(why) < len(NAMES)
@@ -174,15 +173,15 @@ def test_what_is_told_is_true_and_enough():
 def test_one_of_several_is_enough():
     p, q, r = map(atom, "pqr")
     truths = {"p": True, "q": True, "r": True}
-    assert reason(f.Or((f.And((p, q)), r)), True, truths) == {"r": True}
-    assert reason(f.And((p, f.Not(q))), False, truths) == {"q": True}
-    assert reason(p, True, {}) is None
+    assert deciding_atoms(f.Or((f.And((p, q)), r)), True, truths) == {"r": True}
+    assert deciding_atoms(f.And((p, f.Not(q))), False, truths) == {"q": True}
+    assert deciding_atoms(p, True, {}) is None
 
 
 def test_only_what_is_about_one_instant_is_plain():
     later = read_claim(driver_specification(), "danger(SV, POV) -> G danger(SV, POV)")
-    assert not is_plain(Atoms().abstract(later.formula))
-    assert is_plain(f.Not(f.Or((atom("p"), f.Truth(False)))))
+    assert not is_propositional(Atoms().abstract(later.formula))
+    assert is_propositional(f.Not(f.Or((atom("p"), f.Truth(False)))))
 
 
 def test_a_state_is_asked_about_in_full_where_its_reason_is_not_enough():
@@ -208,7 +207,7 @@ def is_in(place: tuple[str, str], box: Box, road: Road) -> bool:
     return any(of(lanelet) == name and overlap(box, lanelet) for lanelet in road.lanelets)
 
 
-def random_layout(rng: Random) -> Layout:
+def random_layout(rng: Random) -> RoadLayout:
     boxes = []
     for _ in range(rng.randint(1, 5)):
         rear, right = Fraction(rng.randint(0, 20)), Fraction(rng.randint(0, 6))
@@ -220,7 +219,7 @@ def random_layout(rng: Random) -> Layout:
     facts = [(place, j) for place in places for j in range(len(boxes))]
     said = {fact: rng.random() < 0.35 for fact in facts if rng.random() < 0.5}
     pairs = [frozenset((a, b)) for a in lanes for b in lanes if a < b]
-    return Layout(
+    return RoadLayout(
         tuple(boxes),
         frozenset(fact for fact, true in said.items() if true),
         frozenset(fact for fact, true in said.items() if not true),
@@ -235,7 +234,7 @@ def test_random_layouts():
     made = 0
     for seed in range(300):
         layout = random_layout(Random(seed))
-        road = lay_road(layout)
+        road = build_road(layout)
         if road is None:
             continue
         made += 1
@@ -257,9 +256,9 @@ LEFT_OF_IT = replace(BOX, right=Fraction(4), left=Fraction(6))
 L = ("lane", "L")
 
 
-def one_lane(boxes: tuple[Box, ...], inside: set[int], outside: set[int]) -> Layout:
+def one_lane(boxes: tuple[Box, ...], inside: set[int], outside: set[int]) -> RoadLayout:
     facts = [frozenset((L, j) for j in which) for which in (inside, outside)]
-    return Layout(boxes, facts[0], facts[1], ("L",), {}, frozenset(), False)
+    return RoadLayout(boxes, facts[0], facts[1], ("L",), {}, frozenset(), False)
 
 
 @pytest.mark.parametrize(
@@ -276,7 +275,7 @@ def one_lane(boxes: tuple[Box, ...], inside: set[int], outside: set[int]) -> Lay
     ],
 )
 def test_what_a_lane_can_and_cannot_do(boxes, inside, outside, possible):
-    assert (lay_road(one_lane(boxes, inside, outside)) is not None) == possible
+    assert (build_road(one_lane(boxes, inside, outside)) is not None) == possible
 
 
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
@@ -285,8 +284,8 @@ def test_a_lanelet_with_a_name_may_come_first_or_later(order):
     outside = {(("lanelet", "l"), 0)}
     boxes = tuple((BOX, BEFORE)[k] for k in order)
     lanelets = {"l": ("L", ZONES)}
-    road = lay_road(
-        Layout(boxes, frozenset(inside), frozenset(outside), ("L",), lanelets, frozenset(), False)
+    road = build_road(
+        RoadLayout(boxes, frozenset(inside), frozenset(outside), ("L",), lanelets, frozenset(), False)
     )
     assert road is not None
     assert [x.lane for x in road.lanelets if x.id == "l"] == ["L"]
@@ -298,7 +297,7 @@ def test_a_lanelet_with_a_name_may_come_first_or_later(order):
 def test_a_short_lane_has_no_lanelet_that_it_does_not_need():
     """Else no claim about every lanelet of a lane would be false for want of one."""
     layout = one_lane((BOX, BEFORE), {1}, {0})
-    whole, short = lay_road(layout), lay_road(replace(layout, short=True))
+    whole, short = build_road(layout), build_road(replace(layout, short=True))
     assert all(overlap(BEFORE, x) for x in short.lanelets)
     assert len(whole.lanelets) > len(short.lanelets)
     assert whole.lanelets[0].s[0] < BOX.rear

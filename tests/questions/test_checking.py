@@ -10,7 +10,7 @@ import pytest
 import roadproof as rp
 from roadproof.evidence.finding import Acceptance
 from roadproof.frontends.api.checking import LISTS, check
-from roadproof.questions.data import QUESTION
+from roadproof.questions.question import QUESTION
 from roadproof.verdict import ExitCode, Verdict
 from sharing import made_once
 

@@ -11,13 +11,13 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from api.doors import IMPOSSIBLE, MINE, SLOW
+from api.both_interfaces import IMPOSSIBLE, MINE, SLOW
 from roadproof.extensions.surveys.coverage.classes import GapClasses, GapGroup
-from roadproof.extensions.surveys.coverage.found import FoundGap, SimpleDrives
+from roadproof.extensions.surveys.coverage.gap_drives import GapDrive, SimpleDrives
 from roadproof.frontends.api.checking import check
 from roadproof.library.elaborate import read_claim
 from roadproof.questions.checking import read_folder
-from roadproof.questions.data import QUESTION
+from roadproof.questions.question import QUESTION
 from roadproof.verdict import ExitCode
 from sharing import made_once
 
@@ -88,7 +88,7 @@ def few_gaps() -> Iterator[None]:
         def few(classes: GapClasses) -> list[GapGroup]:
             return [GapGroup(x.component) for x in groups(classes) if x.title == "behaviourPOV_4"]
 
-        def some(drives: SimpleDrives, start: int, step: int) -> dict[int, FoundGap]:
+        def some(drives: SimpleDrives, start: int, step: int) -> dict[int, GapDrive]:
             return best(drives, 0, 98 * step)
 
         patch.setattr(GapClasses, "groups", few)

@@ -14,18 +14,21 @@ from hypothesis import strategies as st
 from extensions.pages.report.edges import cut_off
 from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.known_drive import recast
-from roadproof.evidence.answer import Answer, undecided
-from roadproof.evidence.certificate import read_certificate
+from roadproof.errors import UsageError
+from roadproof.evidence.answer import ClaimAnswer, undecided
+from roadproof.evidence.certificate_file import read_certificate
 from roadproof.evidence.claim import Claim, Valid
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.extensions.surveys.report.order_picture import draw_order
+from roadproof.frontends.api import ordering
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.order import as_dot, as_text, draw_order
+from roadproof.frontends.report.order import as_dot, as_text
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario
-from roadproof.library.words import called
+from roadproof.library.words import words_by_number
 from roadproof.questions.basis import Basis
 from roadproof.questions.order import deciding
 from roadproof.questions.order.deciding import Edge, JudgedDrives, drive_claim
@@ -37,8 +40,8 @@ from roadproof.questions.order.question import (
     reachable,
     transitive_reduction,
 )
-from roadproof.questions.question import walk
-from roadproof.reasons import Why
+from roadproof.questions.question import walk_batch
+from roadproof.reasons import Reason, ReasonKind
 from roadproof.runtime.budget import Work
 from roadproof.verdict import Verdict
 from roadproof.world.drive import FAR
@@ -67,7 +70,7 @@ def test_scenarios_with_one_formula_are_one_kind() -> None:
     assert by_node[node(1)].nodes == (node(1), node(1, "extA"))
     assert by_node[node(6)].nodes == (node(6), node(6, "extA"), node(6, "ext"))
     assert by_node[node(4)] is not by_node[node(4, "extA")]
-    assert by_node[node(4)].like == by_node[node(12)].like != by_node[node(4, "ext")].like
+    assert by_node[node(4)].family == by_node[node(12)].family != by_node[node(4, "ext")].family
     assert {x.number for kind in kinds_of(BASE, ("base",), (3, 4)) for x in kind.nodes} == {3, 4}
 
 
@@ -80,7 +83,7 @@ def test_implications_are_chains_of_edges() -> None:
     claim: Any = None
     edge = Edge(one, other, "implies", claim)
     order = OrderView((Kind((one,), 0), Kind((other,), 0)), (edge,), (edge,), (), (), ())
-    words = called(BASE, (1,))
+    words = words_by_number(BASE, (1,))
     graph = as_dot(order, words)
     assert graph.count("->") == 1
     assert graph.count('label="1@') == graph.count("cut-in, lane keep, main road") == 2
@@ -139,6 +142,19 @@ def test_scenarios_of_different_size_are_compared(tmp_path: Path, capsys: pytest
     assert main(["check", str(tmp_path / "out"), "--jobs", "1"]) == 0
 
 
+def test_a_run_of_all_scenarios_says_at_once_what_it_does(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def stop(*_: object, **__: object) -> None:
+        raise UsageError("it would take minutes")
+
+    monkeypatch.setattr(ordering, "order", stop)
+    assert main(["order"]) == 2
+    assert capsys.readouterr().err.startswith("expanding all scenarios into families, then looking up")
+    assert main(["order", "--among", "2,4"]) == 2
+    assert capsys.readouterr().err == "roadproof: it would take minutes\n"
+
+
 def test_a_run_that_was_broken_off_goes_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     line = ["order", "--set", "base", "--among", "1,6", "--out", str(out), "--no-pictures", "--json", "-"]
@@ -158,20 +174,28 @@ def test_a_run_that_was_broken_off_goes_on(tmp_path: Path, capsys: pytest.Captur
     assert kept == {x for x in before if not x.startswith(("implies-base-06", "against-base-06"))}
 
 
-def test_a_family_in_doubt_is_asked_again(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("reason", "again"),
+    [(ReasonKind.CLOCK(3.0), 0), (ReasonKind.SOLVER_GAVE_UP(), 0), (ReasonKind.NO_DRIVE(), 20)],
+)
+def test_a_family_in_doubt_is_asked_again_unless_its_work_was_counted_out(
+    reason: Reason,
+    again: int,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     out = tmp_path / "out"
     line = ["order", "--set", "base", "--among", "1,6", "--out", str(out), "--no-pictures", "--jobs", "1"]
 
-    with monkeypatch.context() as without_drives:
-        without_drives.setattr(Engines, "decide", lambda _, claim: undecided(claim, Why.NO_DRIVE()))
+    with monkeypatch.context() as without_answers:
+        without_answers.setattr(Engines, "decide", lambda _, claim: undecided(claim, reason))
         assert main(line) == 20
     told = capsys.readouterr().out
     assert "in doubt: 6@base -> 1@base: neither a proof nor a drive against scenario_6(" in told
     assert main(["check", str(out), "--jobs", "1", "--strict"]) == 20
-    assert main(line) == 0
-    assert main(["check", str(out), "--jobs", "1", "--strict"]) == 0
+    assert main(line) == again
+    assert main(["check", str(out), "--jobs", "1", "--strict"]) == again
 
 
 # --- drives in other roles ---------------------------------------------------------------------------
@@ -180,27 +204,30 @@ def test_a_family_in_doubt_is_asked_again(
 def test_a_drive_for_another_scenario_settles_a_doubt_with_its_vehicles_exchanged() -> None:
     three, one, wide = (read_claim(BASE, f"scenario_{x}(SV, POV, L)") for x in ("3", "1", "3@ext"))
     engines = Engines(Work(recast=True, once=True, disprove=False))
-    drive, _ = engines.settle(BASIS.claim(read_claim(BASE, "scenario_4(SV, POV, L)")))
+    drive, _ = engines.answer_claim(BASIS.claim(read_claim(BASE, "scenario_4(SV, POV, L)")))
     assert drive.drive is not None
     engines.learn(drive)
     wanted = drive_claim(BASIS, three, both(three, negation(one)))
-    engines.learn(undecided(wanted, Why.NO_DRIVE()))
-    shown = engines.settle(wanted)[0].drive
+    engines.learn(undecided(wanted, ReasonKind.NO_DRIVE()))
+    shown = engines.answer_claim(wanted)[0].drive
     assert shown is not None
     assert shown.file.drive.vehicles["SV"] == drive.drive.file.drive.vehicles["POV"]
     assert shown.file.formula == "scenario_3(SV, POV, L) and not scenario_1(SV, POV, L)"
     vain = drive_claim(BASIS, three, both(three, negation(wide)))
-    engines.learn(undecided(vain, Why.NO_DRIVE()))
-    assert engines.settle(vain)[0].verdict is V.UNKNOWN
+    engines.learn(undecided(vain, ReasonKind.NO_DRIVE()))
+    assert engines.answer_claim(vain)[0].verdict is V.UNKNOWN
 
 
 def test_what_the_clock_cut_off_is_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
     claim = BASIS.claim(read_claim(BASE, "scenario_4(SV, POV, L)"))
-    monkeypatch.setattr(Engines, "decide", lambda _, claim: undecided(claim, Why.TOLD("decided")))
-    for reason, seen in ((Why.CLOCK(1), "decided"), (Why.NO_DRIVE(), str(Why.NO_DRIVE_ELSEWHERE()))):
+    monkeypatch.setattr(Engines, "decide", lambda _, claim: undecided(claim, ReasonKind.TOLD("decided")))
+    for reason, seen in (
+        (ReasonKind.CLOCK(1), "decided"),
+        (ReasonKind.NO_DRIVE(), str(ReasonKind.NO_DRIVE_ELSEWHERE())),
+    ):
         engines = Engines(Work(once=True))
         engines.learn(undecided(claim, reason))
-        assert engines.settle(claim)[0].reason == seen
+        assert engines.answer_claim(claim)[0].reason == seen
 
 
 def test_vehicles_that_a_drive_lacks_are_far_behind_all_others() -> None:
@@ -216,24 +243,24 @@ def test_vehicles_that_a_drive_lacks_are_far_behind_all_others() -> None:
 # --- all that can be answered ------------------------------------------------------------------------
 
 
-class Answers(dict[str, Answer]):
+class Answers(dict[str, ClaimAnswer]):
     """Answers by chance, and which of the others are false on each drive."""
 
     def __init__(self, seed: int) -> None:
         self.chance = random.Random(seed)
 
-    def find(self, name: str, claim: Claim) -> Answer:
+    def find(self, name: str, claim: Claim) -> ClaimAnswer:
         if name not in self:
             self[name] = self.answer(claim)
         return self[name]
 
-    def answer(self, claim: Claim) -> Answer:
+    def answer(self, claim: Claim) -> ClaimAnswer:
         kind = self.chance.choice(("shown", "other", "doubt"))
         if kind == "shown":
-            return Answer(claim, PROOF if isinstance(claim.mode, Valid) else DRIVE)
+            return ClaimAnswer(claim, PROOF if isinstance(claim.mode, Valid) else DRIVE)
         if kind == "other" and isinstance(claim.mode, Valid):
-            return Answer(claim, DRIVE)
-        return undecided(claim, Why.NO_DRIVE())
+            return ClaimAnswer(claim, DRIVE)
+        return undecided(claim, ReasonKind.NO_DRIVE())
 
     def truths(self, _: Any, drive: Any, own: Cast, mine: Cast, others: Sequence[Cast]) -> tuple[bool, ...]:
         held = random.Random(repr((own, mine)))
@@ -244,14 +271,14 @@ class Answers(dict[str, Answer]):
 def test_each_implication_is_proved_refuted_or_in_doubt(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """A proof of one reading proves it, drives against all refute it, and nothing else does either."""
     answers = Answers(seed)
-    monkeypatch.setattr(Answer, "verdict", property(verdict_of))
+    monkeypatch.setattr(ClaimAnswer, "verdict", property(verdict_of))
     monkeypatch.setattr(deciding.JudgedDrives, "truths", lambda _, *given: answers.truths(*given))
     asked = question(1, 2, 3, 9)
     seen: set[str] = set()
     while new := [x for x in asked.batches(answers) if x.name not in seen]:
         for batch in new:
             seen.add(batch.name)
-            assert not [*walk(batch, answers.find)]
+            assert not [*walk_batch(batch, answers.find)]
     view = asked.view(answers)
     nodes = [x.node for x in view.kinds]
     proved = {x.pair for x in view.proved}
@@ -274,7 +301,7 @@ def test_each_implication_is_proved_refuted_or_in_doubt(seed: int, monkeypatch: 
             assert any(plain == x or (x.startswith(against[0]) and against[1] in x) for x in texts)
 
 
-def verdict_of(answer: Answer) -> Verdict:
+def verdict_of(answer: ClaimAnswer) -> Verdict:
     """The verdict by the kind of evidence alone, since the evidence here is of other claims."""
     if answer.evidence is DRIVE:
         return V.REFUTED if isinstance(answer.claim.mode, Valid) else V.WITNESSED
@@ -299,19 +326,19 @@ def test_a_pair_of_different_size_has_a_reading_for_each_pov() -> None:
 
 def test_what_follows_from_others_is_no_edge_and_no_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
     """3 -> 5 follows from 3 -> 4 -> 5, whether it is proved by itself or in doubt."""
-    monkeypatch.setattr(Answer, "verdict", property(verdict_of))
+    monkeypatch.setattr(ClaimAnswer, "verdict", property(verdict_of))
     asked = question(3, 4, 5)
     pairs = [(a, b) for a, b in permutations((3, 4, 5), 2)]
     for direct in (True, False):
         proved = {(3, 4), (4, 5)} | ({(3, 5)} if direct else set())
-        known: dict[str, Answer] = {}
+        known: dict[str, ClaimAnswer] = {}
         for a, b in pairs:
             claim: Any = BASIS.claim(read_claim(BASE, "true"))
             valid: Any = object.__new__(Claim)
             object.__setattr__(valid, "mode", Valid())
             name = f"base-{a:02}-base-{b:02}"
             known[f"implies-{name}"] = (
-                Answer(valid, PROOF) if (a, b) in proved else undecided(claim, Why.NO_DRIVE())
+                ClaimAnswer(valid, PROOF) if (a, b) in proved else undecided(claim, ReasonKind.NO_DRIVE())
             )
         view = asked.view(known)
         assert {x.pair for x in view.proved} == {(f"{a}@base", f"{b}@base") for a, b in proved}

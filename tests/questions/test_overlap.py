@@ -7,41 +7,37 @@ from pathlib import Path
 
 import pytest
 
-from asking import prove
+from engine_calls import prove
 from extensions.pages.report.edges import cut_off
-from roadproof.engines.search.placing import placed
-from roadproof.engines.solve.smt import ask
+from rejection import rejection_reason
+from roadproof.engines.search.placing import place_on_known_roads
+from roadproof.engines.solve.smt import check_sat
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.answer import Answer, undecided
-from roadproof.evidence.certificate import read_certificate, refusal
+from roadproof.evidence.answer import ClaimAnswer, undecided
+from roadproof.evidence.certificate_file import read_certificate
 from roadproof.evidence.judged import JudgedDrive, judge_file
+from roadproof.extensions.surveys.report.overlap_picture import draw_overlap, sectors_among
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.figures import as_bytes
-from roadproof.frontends.report.overlap import (
-    as_matrix,
-    as_text,
-    draw_overlap,
-    sectors_among,
-    sheet_of,
-)
+from roadproof.frontends.report.overlap import as_matrix, as_text, sheet_of
 from roadproof.frontends.report.sheet import as_csv
 from roadproof.library.elaborate import apply_definition, read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_numbers
 from roadproof.library.scenarios import Scenario, without_sectors
 from roadproof.library.specification import Query
-from roadproof.library.words import Words, called
+from roadproof.library.words import Words, words_by_number
 from roadproof.logic.formula import Not
 from roadproof.logic.parts import parts_of
 from roadproof.questions.basis import Basis
+from roadproof.questions.decide import decide_claims
 from roadproof.questions.overlap import Meeting, OverlapQuestion, PairVerdict, conjunctions, name_of, pairs_of
-from roadproof.questions.settle import settle
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 BASE = bundled_library().select("base")
-WORDS = called(BASE)
+WORDS = words_by_number(BASE)
 BASIS = Basis(BASE)
 PROOF = read_certificate(Path(__file__).parents[2] / "proofs/P4-scenario-03-base.json")
 
@@ -61,7 +57,7 @@ def entries() -> dict[tuple[int, int], PairVerdict]:
     question = OverlapQuestion(BASIS, Meeting(among=(4, 5, 8, 12, 16, 20, 24)))
     pairs = tuple(x for x in question.pairs if (x[0].number, x[1].number) in wanted)
     vars(question)["pairs"] = pairs
-    found = question.view(settle(question, hands=1).answers).pairs
+    found = question.view(decide_claims(question, executor=1).answers).pairs
     return {(entry.a.number, entry.b.number): entry for entry in found}
 
 
@@ -89,7 +85,7 @@ def test_every_certificate_proves_that_parts_of_its_pair_clash(
             [(name, answer)] = entry.evidence.items()
             proof = answer.certificate
             assert proof is not None
-            assert refusal(proof, bundled_library(), ask) is None
+            assert rejection_reason(proof, bundled_library(), check_sat) is None
             denied = read_claim(BASE, proof.claim).formula
             assert isinstance(denied, Not)
             assert {*parts_of(denied.body)} <= {*parts_of(entry.claims[name].formula)}
@@ -102,7 +98,7 @@ BOTH_ROLES = Meeting(roles="any")
 def decided(a: int, b: int) -> PairVerdict:
     """The answer for a pair in either role, which is two readings of how they meet."""
     question = OverlapQuestion(BASIS, replace(BOTH_ROLES, among=(a, b)))
-    [pair] = question.view(settle(question).answers).pairs
+    [pair] = question.view(decide_claims(question).answers).pairs
     return pair
 
 
@@ -128,12 +124,33 @@ def test_a_core_clashes_by_itself(entries: dict[tuple[int, int], PairVerdict]) -
             assert prove(BASE, claim, Effort(5.0)).verdict is Verdict.PROVED
 
 
+def test_pairs_that_differ_in_road_sectors_only_clash_in_the_words_of_the_first() -> None:
+    question = OverlapQuestion(BASIS, Meeting(among=(1, 8, 16)))
+    lanes, other = "not sameLane(POV, SV, L)", "atLane(SV, L)"
+    parts = {
+        "base-01-base-08": (lanes, "initialCondition_8(SV, POV, L)"),
+        "base-01-base-16": (lanes, "initialCondition_16(SV, POV, L)"),
+    }
+    claims = {name: claim for named in question.claims.values() for name, claim in named.items()}
+
+    def cores() -> list[tuple[str, ...]]:
+        known = {
+            name: ClaimAnswer(claims[name], replace(PROOF, claim=f"not ({' and '.join(x)})"))
+            for name, x in parts.items()
+        }
+        return [x.core_texts for x in question.view(known).pairs if x.cores]
+
+    assert cores() == [parts["base-01-base-08"]] * 2
+    parts["base-01-base-16"] = (lanes, other)
+    assert cores() == [*parts.values()]
+
+
 def test_a_drive_is_not_taken_for_what_it_does_not_show(entries: dict[tuple[int, int], PairVerdict]) -> None:
     drive = entries[4, 8].drive
     assert drive is not None
 
     def shows(text: str) -> bool:
-        return placed(drive.file, read_claim(BASE, text), bundled_library()) is not None
+        return place_on_known_roads(drive.file, read_claim(BASE, text), bundled_library()) is not None
 
     assert shows("scenario_20(SV,POV,L) and scenario_8(SV,POV,L)")
     assert not shows("scenario_4(SV,POV,L) and not scenario_4(SV,POV,L)")
@@ -181,7 +198,7 @@ def test_across_sets_every_scenario_meets_every_other() -> None:
     assert len(pairs_of(basis)) == 576
     question = OverlapQuestion(basis, Meeting(among=(1, 3)))
     vars(question)["pairs"] = ((node(1), node(3, "ext")),)
-    [entry] = question.view(settle(question).answers).pairs
+    [entry] = question.view(decide_claims(question).answers).pairs
     assert (entry.a.set_name, entry.b.set_name) == ("base", "ext")
     assert entry.verdict in (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
 
@@ -234,12 +251,12 @@ def verdict(a: int, b: int, name: str, *core: str) -> PairVerdict:
     match Verdict(name):
         case Verdict.WITNESSED:
             drive: JudgedDrive = object.__new__(JudgedDrive)
-            answer = Answer(claim, drive)
+            answer = ClaimAnswer(claim, drive)
         case Verdict.IMPOSSIBLE:
             denied = f"not ({' and '.join(parts)})"
-            answer = Answer(claim, replace(PROOF, claim=denied))
+            answer = ClaimAnswer(claim, replace(PROOF, claim=denied))
         case _:
-            answer = undecided(claim, Why.TOLD("why"))
+            answer = undecided(claim, ReasonKind.TOLD("why"))
     pair = name_of(node(a), node(b))
     return PairVerdict(node(a), node(b), {pair: claim}, {pair: answer})
 
@@ -296,7 +313,7 @@ def test_the_heat_map_is_one_triangle_with_names_in_groups() -> None:
 
 
 def test_the_text_says_what_numbers_mean() -> None:
-    told = as_text([verdict(1, 4, "WITNESSED")], False, called(BASE, (1, 4))).splitlines()
+    told = as_text([verdict(1, 4, "WITNESSED")], False, words_by_number(BASE, (1, 4))).splitlines()
     assert told[-3:] == ["  1: cut-in, lane keep", "  4: deceleration ahead, lane keep", "  1, 4: main road"]
 
 

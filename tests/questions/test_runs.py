@@ -11,22 +11,23 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from questions.heard import Asked
+from questions.decided_claims import Asked
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError, SharedError, UsageError
-from roadproof.evidence.answer import answer_data, undecided
+from roadproof.evidence.answer import undecided
+from roadproof.evidence.answer_codec import answer_data
 from roadproof.extensions.surveys.redundancy import RedundancyQuestion
 from roadproof.frontends.api.definitions import load
-from roadproof.frontends.api.proofs import claims_of
+from roadproof.frontends.api.proofs import claims_question
 from roadproof.frontends.cli.main import main
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Source
 from roadproof.questions.basis import Basis
+from roadproof.questions.decide import Decisions, decide_claims
 from roadproof.questions.overlap import Meeting, OverlapQuestion
-from roadproof.questions.settle import Settled, settle
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.runtime.executors import Cluster, Executor, Shard
-from roadproof.runtime.files import hold_folder
+from roadproof.runtime.files import lock_folder
 from sharing import made_once
 
 # --- Runs that divide a question without talking to each other: nothing is lost, and nothing is asked twice
@@ -40,65 +41,67 @@ def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Asked:
     return Asked(tmp_path / "notes", monkeypatch, Engines, lambda claim: claim.text)
 
 
-QUESTION = claims_of(load(), [f"v_lon(SV) > {k} m/s -> v_lon(SV) > {k - 1} m/s" for k in range(1, 8)], None)
+QUESTION = claims_question(
+    load(), [f"v_lon(SV) > {k} m/s -> v_lon(SV) > {k - 1} m/s" for k in range(1, 8)], None
+)
 
 
-def plain(found: Settled) -> dict[str, Any]:
+def plain(found: Decisions) -> dict[str, Any]:
     return {name: answer_data(x) for name, x in sorted(found.answers.items())}
 
 
 @pytest.mark.parametrize("of", [1, 2, 3, 7])
 def test_each_piece_is_in_one_share(of: int) -> None:
     shards = [Shard(k, of) for k in range(1, of + 1)]
-    assert [sum(shard.has(name) for shard in shards) for name in NAMES] == [1] * len(NAMES)
+    assert [sum(shard.includes(name) for shard in shards) for name in NAMES] == [1] * len(NAMES)
     assert sorted(x for shard in shards for x in shard.among(NAMES)) == sorted(NAMES)
-    assert all(sum(map(shard.has, NAMES)) > len(NAMES) / of / 2 for shard in shards)
+    assert all(sum(map(shard.includes, NAMES)) > len(NAMES) / of / 2 for shard in shards)
 
 
 def test_shares_make_up_the_whole(asked: Asked, tmp_path: Path) -> None:
-    whole, folder = settle(QUESTION, tmp_path / "whole", 1), tmp_path / "out"
+    whole, folder = decide_claims(QUESTION, tmp_path / "whole", 1), tmp_path / "out"
     assert len(asked.since()) == 7
     shares = []
     for number in (2, 1, 2):
         with pytest.raises(
             SharedError, match=f"shard {number}/3 is done: . answers are stored; other runs process . claims"
         ):
-            settle(QUESTION, folder, Executor(1, shard=Shard(number, 3)))
+            decide_claims(QUESTION, folder, Executor(1, shard=Shard(number, 3)))
         shares += asked.since()
     assert len(shares) == 5  # of 7: every third to each of two runs
-    found = settle(QUESTION, folder, Executor(1, shard=Shard(3, 3)))  # the last one has the whole
+    found = decide_claims(QUESTION, folder, Executor(1, shard=Shard(3, 3)))  # the last one has the whole
     shares += asked.since()
     assert len(shares) == len({*shares}) == len(whole.answers)
     assert plain(found) == plain(whole)
-    assert plain(settle(QUESTION, folder, 1)) == plain(whole)
+    assert plain(decide_claims(QUESTION, folder, 1)) == plain(whole)
     assert asked.since() == []
 
 
 def test_the_last_run_asks_what_a_run_that_never_came_was_to_ask(asked: Asked, tmp_path: Path) -> None:
     with pytest.raises(SharedError):
-        settle(QUESTION, tmp_path / "out", Executor(1, shard=Shard(1, 2)))
+        decide_claims(QUESTION, tmp_path / "out", Executor(1, shard=Shard(1, 2)))
     first = asked.since()
     assert len(first) == 4
-    settle(QUESTION, tmp_path / "out", 1)
+    decide_claims(QUESTION, tmp_path / "out", 1)
     assert len({*first, *asked.since()}) == 7
 
 
 def test_a_doubt_is_told_and_left_to_the_last_run(
     asked: Asked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    doubtful, true_settle = QUESTION.tasks[0].task.claim, Engines.settle
+    doubtful, true_settle = QUESTION.tasks[0].task.claim, Engines.answer_claim
 
     def doubt(engines: Engines, claim: Any, *more: Any) -> Any:
         answer, cost = true_settle(engines, claim, *more)
-        return (undecided(claim, Why.NONE_FOUND()) if claim.text == doubtful else answer), cost
+        return (undecided(claim, ReasonKind.SOLVER_GAVE_UP()) if claim.text == doubtful else answer), cost
 
     with monkeypatch.context() as patch:
-        patch.setattr(Engines, "settle", doubt)
+        patch.setattr(Engines, "answer_claim", doubt)
         with pytest.raises(SharedError) as raised:
-            settle(QUESTION, tmp_path / "out", Executor(1, shard=Shard(1, 3)))
+            decide_claims(QUESTION, tmp_path / "out", Executor(1, shard=Shard(1, 3)))
     assert "1 in doubt, to be computed again" in str(raised.value)
     first = asked.since()
-    settle(QUESTION, tmp_path / "out", 1)
+    decide_claims(QUESTION, tmp_path / "out", 1)
     assert [x for x in first if x in asked.since()] == [doubtful]
 
 
@@ -107,7 +110,7 @@ def test_what_no_share_is(capsys: pytest.CaptureFixture[str]) -> None:
         with pytest.raises(UsageError, match="write K/N with K from 1 to N"):
             Shard.read(text)
     with pytest.raises(UsageError, match="the folder that the runs share"):
-        settle(QUESTION, hands=Executor(shard=Shard(1, 2)))
+        decide_claims(QUESTION, executor=Executor(shard=Shard(1, 2)))
     for line, told in (
         ("--shard 1/2 --json -", "use --json in the run without --shard"),
         ("--tls-ca ca.pem", "--tls-ca requires --cluster"),
@@ -120,16 +123,16 @@ def test_what_no_share_is(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_runs_that_share_a_folder_keep_others_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roadproof.runtime.files.LETTING_GO", 0.0)
+    monkeypatch.setattr("roadproof.runtime.files.RELEASE_SECONDS", 0.0)
     outside = pytest.raises(InputError, match="another run is writing")
     with (
-        hold_folder(tmp_path, shared=True),
-        hold_folder(tmp_path, shared=True),
+        lock_folder(tmp_path, shared=True),
+        lock_folder(tmp_path, shared=True),
         outside,
-        hold_folder(tmp_path),
+        lock_folder(tmp_path),
     ):
         pass
-    with hold_folder(tmp_path), outside, hold_folder(tmp_path, shared=True):
+    with lock_folder(tmp_path), outside, lock_folder(tmp_path, shared=True):
         pass
 
 
@@ -148,7 +151,7 @@ def test_a_folder_that_goes_away_ends_the_run(tmp_path: Path) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
     with pytest.raises(InputError, match="was removed during the run"):
-        settle(QUESTION, folder, hands=1, each=remove)
+        decide_claims(QUESTION, folder, executor=1, each=remove)
     assert not list(tmp_path.rglob("*.json"))
 
 
@@ -161,7 +164,7 @@ FIRST, SECOND, *_ = (name for claims in PAIRS.claims.values() for name in claims
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    made = made_once("pairs", lambda home: settle(PAIRS, home / "out", 1))
+    made = made_once("pairs", lambda home: decide_claims(PAIRS, home / "out", 1))
     return Path(shutil.copytree(made / "out", tmp_path / "out"))
 
 
@@ -169,7 +172,7 @@ def again(folder: Path, asked: Asked, question: OverlapQuestion = PAIRS) -> tupl
     """How many claims are asked again, and what is told of files that do not count."""
     asked.since()
     told: list[str] = []
-    settle(question, folder, 1, say=told.append)
+    decide_claims(question, folder, 1, say=told.append)
     return len(asked.since()), told
 
 
@@ -205,7 +208,7 @@ def other_questions() -> Iterator[tuple[str, Any]]:
     library = bundled_library()
 
     def under(basis: Basis) -> OverlapQuestion:
-        return OverlapQuestion(basis, PAIRS.asked)
+        return OverlapQuestion(basis, PAIRS.settings)
 
     def added(text: str) -> OverlapQuestion:
         return under(Basis(build_library([Source("m", text)], library).select()))
@@ -219,7 +222,7 @@ def other_questions() -> Iterator[tuple[str, Any]]:
     yield "another order of readings", added("option lateral_sign = literal | rss")
     yield "another analysis", RedundancyQuestion(BASIS)
     yield "other pairs", OverlapQuestion(BASIS, Meeting(among=(3, 4)))
-    yield "another start", OverlapQuestion(BASIS, replace(PAIRS.asked, start="any"))
+    yield "another start", OverlapQuestion(BASIS, replace(PAIRS.settings, start="any"))
 
 
 OTHERS = dict(other_questions())
@@ -229,14 +232,14 @@ OTHERS = dict(other_questions())
 def test_answers_to_another_question_are_not_taken_over(folder: Path, other: Any) -> None:
     before = {x.name: x.read_bytes() for x in folder.glob("*.json")}
     with pytest.raises(UsageError, match="the answers to another question"):
-        settle(other, folder, 1)
+        decide_claims(other, folder, 1)
     assert {x.name: x.read_bytes() for x in folder.glob("*.json")} == before
 
 
 def test_answers_of_another_version_are_not_taken_over(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("roadproof.evidence.heading.VERSION", "0.0.0")
     with pytest.raises(UsageError, match="the answers to another question"):
-        settle(PAIRS, folder, 1)
+        decide_claims(PAIRS, folder, 1)
 
 
 def test_copies_of_specification_files_lie_beside_the_evidence(tmp_path: Path) -> None:

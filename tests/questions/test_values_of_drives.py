@@ -9,7 +9,7 @@ import pytest
 import roadproof as rp
 from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.known_drive import KnownDrive
-from roadproof.evidence.answer import Answer
+from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.claim import Claim, Exists, claim_of
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.elaborate import read_claim
@@ -27,7 +27,7 @@ def claim(text: str, gap: Fraction | None = None) -> Claim:
 
 @pytest.fixture(scope="module")
 def drive() -> JudgedDrive:
-    answer, _ = Engines(Work(Effort(20.0))).settle(claim(BEHIND))
+    answer, _ = Engines(Work(Effort(20.0))).answer_claim(claim(BEHIND))
     assert answer.drive is not None
     assert "gap" not in answer.drive.file.values
     return answer.drive
@@ -48,7 +48,7 @@ def test_each_way_to_try_a_known_drive_reads_the_values_of_the_claim(
     asked = claim(f"({BEHIND}) and {text}", gap)
     engines = Engines(work)
     engines.offer(drive)
-    answer, _ = engines.settle(asked)
+    answer, _ = engines.answer_claim(asked)
     holds = gap * factor < (15 if text.startswith("v_lon") else 40)
     assert (answer.verdict is Verdict.WITNESSED) == holds
     if answer.drive is not None:
@@ -63,8 +63,8 @@ def test_no_answer_is_made_of_a_drive_with_other_values(drive: JudgedDrive) -> N
     asked = claim(f"({BEHIND}) and v_lon(SV) > gap*5 m/s^2", Fraction(1))
     shown = KnownDrive(drive).here(asked)
     assert shown is not None
-    assert Answer(asked, shown).verdict is Verdict.WITNESSED
+    assert ClaimAnswer(asked, shown).verdict is Verdict.WITNESSED
     with pytest.raises(ValueError, match="it has gap=1, and not 2"):
-        Answer(claim(f"({BEHIND}) and v_lon(SV) > gap*5 m/s^2"), shown)
+        ClaimAnswer(claim(f"({BEHIND}) and v_lon(SV) > gap*5 m/s^2"), shown)
     everywhere = replace(asked, mode=replace(asked.mode, horizon=Fraction(3)))
     assert everywhere.values == {"gap": 1}

@@ -50,7 +50,7 @@ class Known:
         vehicles = dict.fromkeys(query.vehicles, CAR)
         lanes = assignments(query, road, {})
         return SearchProblem(
-            query, road, vehicles, VALUES, lanes, self.grid, Assumptions(reach=REACH).plain()
+            query, road, vehicles, VALUES, lanes, self.grid, Assumptions(reach=REACH).without_comfort()
         )
 
 

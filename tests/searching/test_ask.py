@@ -7,24 +7,26 @@ import numpy as np
 import pytest
 
 import roadproof as rp
-from asking import posed, search_for
+from engine_calls import search_for, search_problem
 from roadproof.engines.prove.prover import ProofHeuristic, prove
-from roadproof.engines.search import alone, ask, impossible, search
-from roadproof.engines.search.ask import answer
+from roadproof.engines.search import impossible, search, single_claim
 from roadproof.engines.search.bounded import check_bounded
-from roadproof.engines.search.enumeration import small_drive
+from roadproof.engines.search.decide import decide_claim
+from roadproof.engines.search.enumeration import short_refuting_drive
 from roadproof.engines.search.patterns import spread
-from roadproof.engines.search.question import SearchOptions, make_grid, usual_model
+from roadproof.engines.search.question import make_grid, usual_model
 from roadproof.engines.search.refute import beyond_limits, quick_drive
-from roadproof.engines.search.settle import settle
+from roadproof.engines.setting import SearchOptions
 from roadproof.errors import UsageError
 from roadproof.evidence.judged import judge_file
+from roadproof.extensions.catalogue import completing
+from roadproof.extensions.catalogue.completing import search_drive_or_unknown
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.motion import under_limits
 from roadproof.runtime.budget import BudgetExceeded, Effort
-from roadproof.runtime.package_data import shipped
-from roadproof.semantics.exact.exact import judge
+from roadproof.runtime.package_data import shipped_folder
+from roadproof.semantics.exact.judging import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.verdict import Verdict
 from roadproof.world.models import load_vehicle
@@ -37,13 +39,13 @@ SLOWER = "v_lon(SV) < v_lon(POV)"
 
 def models(**vehicles):
     named = {name.removeprefix("every"): str(model) for name, model in vehicles.items()}
-    question = posed(search_for(SLOWER, vehicles=named))
+    question = search_problem(search_for(SLOWER, vehicles=named))
     return {name: vehicle.name for name, vehicle in question.vehicles.items()}
 
 
 def test_vehicles_are_cars_unless_told_otherwise(tmp_path):
     van = tmp_path / "van.toml"
-    shutil.copy(shipped("models") / "vehicles/car.toml", van)
+    shutil.copy(shipped_folder("models") / "vehicles/car.toml", van)
     assert models() == {"SV": "car", "POV": "car"}
     assert models(SV=van) == {"SV": "van", "POV": "car"}
     assert models(every=van, POV="car") == {"SV": "van", "POV": "car"}
@@ -52,7 +54,7 @@ def test_vehicles_are_cars_unless_told_otherwise(tmp_path):
 @pytest.mark.parametrize("kind", ["truck", "bus", "motorcycle"])
 @pytest.mark.parametrize("role", ["SV", "POV"])
 def test_every_kind_of_vehicle_in_every_role(role, kind):
-    (judged,) = answer(search_for("4", vehicles={role: kind})).drives
+    (judged,) = search_drive_or_unknown(search_for("4", vehicles={role: kind})).drives
     model = load_vehicle(kind)
     motion = judged.file.drive.vehicles[role]
     assert (motion.length, motion.width) == (model.length, model.width)
@@ -60,7 +62,7 @@ def test_every_kind_of_vehicle_in_every_role(role, kind):
 
 
 def test_limits_of_one_vehicle_are_not_those_of_another():
-    vehicles = posed(search_for(SLOWER, limits={"SV": {"v_lon.max": Fraction(20)}})).vehicles
+    vehicles = search_problem(search_for(SLOWER, limits={"SV": {"v_lon.max": Fraction(20)}})).vehicles
     assert vehicles["SV"].v_lon[1] == 20 < vehicles["POV"].v_lon[1]
 
 
@@ -74,8 +76,8 @@ def test_what_the_clock_cuts_off_is_unknown_on_its_road(monkeypatch):
     def late(request):
         raise BudgetExceeded(3.0)
 
-    monkeypatch.setattr(ask, "ask", late)
-    outcome = answer(search_for("4"))
+    monkeypatch.setattr(completing, "search_drive", late)
+    outcome = search_drive_or_unknown(search_for("4"))
     assert (outcome.verdict, outcome.scenario, outcome.road) == (Verdict.UNKNOWN, 4, "main-2")
     assert outcome.query.text == "scenario_4(SV, POV, L)"
     assert "cut off by the clock after 3 s" in outcome.reason
@@ -91,11 +93,11 @@ def test_a_core_costs_no_more_than_is_left(monkeypatch):
 
         return asks
 
-    for name in ("prove", "prove_of_scenarios"):
+    for name in ("prove", "prove_via_opaque_driver"):
         monkeypatch.setattr(impossible, name, heard(getattr(impossible, name)))
     clash = "v_lon(SV) > 3 m/s and F v_lon(POV) > 3 m/s and v_lon(SV) < 2 m/s"
     found = impossible.show_impossible(LIBRARY.select(), read_claim(LIBRARY.select(), clash), Effort(5))
-    assert found.told == ("v_lon(SV) > 3 m/s", "v_lon(SV) < 2 m/s")
+    assert found.core_texts == ("v_lon(SV) > 3 m/s", "v_lon(SV) < 2 m/s")
     assert found.minimal
     assert asked[0] == 5
     assert all(units <= impossible.SHORTER for units in asked[1:])
@@ -106,11 +108,11 @@ def test_a_core_does_not_rest_on_hunches(hunch, monkeypatch):
     clash = "v_lon(SV) > 3 m/s and F v_lon(POV) > 3 m/s and v_lon(SV) < 2 m/s and d(SV) > 1 m"
     query = read_claim(LIBRARY.select(), clash)
     right = impossible.show_impossible(LIBRARY.select(), query, Effort(5))
-    assert right.told == ("v_lon(SV) > 3 m/s", "v_lon(SV) < 2 m/s")
+    assert right.core_texts == ("v_lon(SV) > 3 m/s", "v_lon(SV) < 2 m/s")
     monkeypatch.setattr(impossible.ProofHeuristic, "has_proof", lambda self, claim, effort: (hunch, 0.0))
     found = impossible.show_impossible(LIBRARY.select(), query, Effort(5))
     assert found.certificate == right.certificate
-    assert found.told == (right.told if hunch else tuple(clash.split(" and ")))
+    assert found.core_texts == (right.core_texts if hunch else tuple(clash.split(" and ")))
 
 
 def test_what_is_learnt_of_one_claim_does_not_change_the_next():
@@ -151,7 +153,7 @@ def test_drives_that_were_found_stand_where_a_later_search_is_cut_off(monkeypatc
 def test_durations_without_a_common_step_are_named():
     wrong = "3000 steps of dt=1/500 s, and at most 400 .* multiples of dt \\(71/500 s, 3/5 s\\)"
     with pytest.raises(UsageError, match=wrong):
-        posed(search_for("F[0, 0.142 s] danger(SV,POV) and F[0, 0.6 s] danger(SV,POV)"))
+        search_problem(search_for("F[0, 0.142 s] danger(SV,POV) and F[0, 0.6 s] danger(SV,POV)"))
 
 
 # --- Which of two formulas implies the other: a proof or a drive for each direction -----------------
@@ -197,7 +199,7 @@ def test_what_the_clock_cuts_off_is_unknown(monkeypatch):
     def late(*_):
         raise BudgetExceeded(7.0)
 
-    monkeypatch.setattr(alone, "_decided", late)
+    monkeypatch.setattr(single_claim, "_decide_without_search", late)
     found = compared(FAST, FASTER)
     assert found.forward.verdict is found.backward.verdict is Verdict.UNKNOWN
     assert "after 7 s" in found.forward.reason
@@ -254,7 +256,7 @@ def claim(text):
 
 @pytest.mark.parametrize("text", SLOW)
 def test_beyond_the_limits_of_the_shipped_car(text):
-    assert small_drive(HOME, claim(text), "model") is None
+    assert short_refuting_drive(HOME, claim(text), "model") is None
     drive = quick_drive(HOME, claim(text))
     assert judge(drive.judgement.formula, drive.file.drive).holds
     assert "limits of the shipped car" in beyond_limits(drive)
@@ -263,7 +265,7 @@ def test_beyond_the_limits_of_the_shipped_car(text):
 @pytest.mark.parametrize("text", WITHIN)
 def test_within_the_limits_of_the_shipped_car(text):
     query = claim(text)
-    found = small_drive(HOME, query, "model")
+    found = short_refuting_drive(HOME, query, "model")
     models = {name: usual_model(query.formula, name) for name in query.vehicles}
     assert first_breach(found.file.drive, models, None) is None
     assert first_overlap(found.file.drive, found.file.horizon) is None
@@ -273,7 +275,7 @@ def test_within_the_limits_of_the_shipped_car(text):
 @pytest.mark.parametrize("within", ["model", "forward", "claim"])
 @pytest.mark.parametrize("text", ["v_lon(SV) > 3 m/s or v_lon(SV) < 4 m/s", "given x: m: s(SV) > x", "true"])
 def test_none_against_what_holds_or_is_not_about_drives(text, within):
-    assert small_drive(HOME, claim(text), within, 2) is None
+    assert short_refuting_drive(HOME, claim(text), within, 2) is None
 
 
 def test_the_same_drive_every_time():
@@ -297,7 +299,7 @@ def test_nobody_reverses_where_that_is_not_needed():
 )
 def test_under_motion_within_the_limits_that_are_said(text, said):
     """The limits are part of what is judged: a drive that leaves them refutes nothing."""
-    found = settle(HOME, claim(text), Effort(3), said=said)
+    found = decide_claim(HOME, claim(text), Effort(3), assumed=said)
     assert (found.verdict, found.refuted_by) == (Verdict.REFUTED, "drive")
     limits = under_limits(HOME, claim(text), said)
     assert found.drive.file.formula == quick_drive(HOME, limits).file.formula
@@ -317,7 +319,7 @@ def test_limits_that_make_the_claim_true_leave_no_drive():
     ],
 )
 def test_across_the_road_at_the_numbers_of_the_claim(text):
-    drive = small_drive(HOME, claim(text), "claim", 2)
+    drive = short_refuting_drive(HOME, claim(text), "claim", 2)
     assert judge(drive.judgement.formula, drive.file.drive).holds
     assert any(x.v_lat for x in drive.file.drive.vehicles.values())
 
@@ -325,9 +327,9 @@ def test_across_the_road_at_the_numbers_of_the_claim(text):
 @pytest.mark.parametrize("text", [SLOW[0], "v_lat(SV) <= 1 m/s and d(POV) <= 25 m -> v_lat(POV) > 2 m/s"])
 def test_samples_and_drive_are_the_same_motion(text):
     """The monitor sees in floating point what the judge sees in rational numbers."""
-    from roadproof.engines.search.enumeration import _search
+    from roadproof.engines.search.enumeration import _short_drive_search
 
-    search = _search(HOME, claim(text), "claim")
+    search = _short_drive_search(HOME, claim(text), "claim")
     patterns, dt, steps = search.patterns(), Fraction(1, 2), 20
     rows = spread(0, 40, patterns.columns)
     batch = patterns.batch(rows, dt, steps)

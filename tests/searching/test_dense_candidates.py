@@ -6,16 +6,16 @@ from fractions import Fraction
 
 import pytest
 
-from asking import posed, search_for
+from engine_calls import search_for, search_problem
 from roadproof.engines.search.bounded import check_bounded
 from roadproof.engines.search.dense_candidates import keeps_limits
-from roadproof.engines.search.question import SearchOptions
 from roadproof.engines.search.shipped_drives import shipped_drives
+from roadproof.engines.setting import SearchOptions
 from roadproof.evidence.judged import judge_file
 from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
-from roadproof.world.motion import starts_of
+from roadproof.world.motion import piece_starts
 
 LIBRARY = bundled_library()
 OPEN = (
@@ -53,7 +53,7 @@ def first_instant_claims(conditions, rng, count):
 def assert_refuted_within_limits(result, search):
     assert result.verdict is Verdict.REFUTED
     assert judge_file(result.drive.file, LIBRARY).accepted
-    assert keeps_limits(posed(search), result.drive.file.drive)
+    assert keeps_limits(search_problem(search), result.drive.file.drive)
 
 
 @pytest.mark.parametrize("engine", ["milp", "smt"])
@@ -78,7 +78,7 @@ def test_an_excursion_between_two_samples_refutes(claim):
 def test_a_shipped_drive_refutes_before_anything_is_solved(monkeypatch):
     from roadproof.engines.search import dense_candidates
 
-    monkeypatch.setattr(dense_candidates, "drive_within", lambda *_: None)
+    monkeypatch.setattr(dense_candidates, "short_satisfying_drive", lambda *_: None)
     monkeypatch.setattr(dense_candidates, "_weaker_problems", lambda _: ())
     search = asked("F atLane(POV,L) -> (not atLane(POV,L) U atLane(POV,L))", road="main-2")
     assert check_bounded(search).verdict is Verdict.PROVED_BOUNDED
@@ -89,7 +89,7 @@ def test_a_shipped_drive_refutes_before_anything_is_solved(monkeypatch):
 def test_solutions_of_weaker_problems_refute_alone(monkeypatch, claim):
     from roadproof.engines.search import dense_candidates
 
-    monkeypatch.setattr(dense_candidates, "drive_within", lambda *_: None)
+    monkeypatch.setattr(dense_candidates, "short_satisfying_drive", lambda *_: None)
     search = asked(claim)
     assert_refuted_within_limits(check_bounded(search), search)
 
@@ -100,7 +100,7 @@ def test_a_drive_outside_the_limits_is_no_candidate():
     names = tuple(drive.vehicles)
     same = {name: name for name in names}
     search = asked("F atLane(POV,L) and v_lon(SV) > 0 m/s", road="main-2")
-    assert keeps_limits(posed(search), drive)
+    assert keeps_limits(search_problem(search), drive)
     gap = abs(drive.vehicles["SV"].s - drive.vehicles["POV"].s)
     for changes in (
         {"horizon": Fraction(3, 5)},
@@ -109,15 +109,15 @@ def test_a_drive_outside_the_limits_is_no_candidate():
         {"limits": {"POV": {"v_lon.max": Fraction(16)}}},
     ):
         other = asked(search.query.text, **({"road": "main-2"} | changes))
-        assert not keeps_limits(posed(other), drive.cast(same))
-    last = max(starts_of(motion)[-1].time for motion in drive.vehicles.values())
+        assert not keeps_limits(search_problem(other), drive.cast(same))
+    last = max(piece_starts(motion)[-1].time for motion in drive.vehicles.values())
     for horizon, kept in ((last, True), (last - Fraction(3, 5), False)):
-        within = posed(asked(search.query.text, road="main-2", horizon=horizon, dt=Fraction(3, 5)))
+        within = search_problem(asked(search.query.text, road="main-2", horizon=horizon, dt=Fraction(3, 5)))
         assert keeps_limits(within, drive) == kept
     elsewhere = asked("F atLane(POV,L) and inMergeZone(SV)", road="merge")
     far = drive.vehicles["SV"].s + 10_000
     moved = {name: _moved(motion, far) for name, motion in drive.vehicles.items()}
-    assert not keeps_limits(posed(elsewhere), type(drive)(moved))
+    assert not keeps_limits(search_problem(elsewhere), type(drive)(moved))
 
 
 @pytest.mark.parametrize(

@@ -5,11 +5,11 @@ from fractions import Fraction
 
 import pytest
 
-from asking import posed, search_for
-from roadproof.engines.search.ask import ask
+from engine_calls import search_for, search_problem
 from roadproof.engines.search.bounded import check_bounded
-from roadproof.engines.search.question import SearchOptions
+from roadproof.engines.search.drive_search import search_drive
 from roadproof.engines.search.search import show_none
+from roadproof.engines.setting import SearchOptions
 from roadproof.evidence.judged import judge_file
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
@@ -19,7 +19,9 @@ from tables import read_table
 
 
 def ask_for(what, engine="milp", **changes):
-    return ask(search_for(what, search_options=SearchOptions(engine=engine, effort=Effort(30)), **changes))
+    return search_drive(
+        search_for(what, search_options=SearchOptions(engine=engine, effort=Effort(30)), **changes)
+    )
 
 
 @pytest.mark.parametrize("engine", ["milp", "smt"])
@@ -110,7 +112,7 @@ def test_what_fails_by_a_hair_is_denied(what):
     ],
 )
 def test_which_vehicle_comes_first_makes_no_difference(what, verdict):
-    question = posed(search_for(what.format("SV", "POV", "POV2"), natural=False, **SHORT))
+    question = search_problem(search_for(what.format("SV", "POV", "POV2"), natural=False, **SHORT))
     for turn in (("SV", "POV", "POV2"), ("POV2", "SV", "POV"), ("POV", "POV2", "SV")):
         turned = replace(question, vehicles={name: question.vehicles[name] for name in turn})
         assert show_none(turned, SearchOptions(effort=Effort(30))).verdict is verdict

@@ -5,13 +5,13 @@ from fractions import Fraction
 
 import pytest
 
-from asking import posed, search_for
+from engine_calls import search_for, search_problem
 from planting import plant
 from roadproof.engines.encode import build
 from roadproof.engines.search import bounded, search
 from roadproof.engines.search.impossible import Impossibility
-from roadproof.engines.search.outcome import Outcome
-from roadproof.engines.search.question import SearchOptions
+from roadproof.engines.search.outcome import SearchOutcome
+from roadproof.engines.setting import SearchOptions
 from roadproof.engines.solve import bounds
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
@@ -27,7 +27,7 @@ def denied(search_options=None):
     """The drives that are denied."""
     found = []
     for name, what in DRIVES.items():
-        asked = posed(search_for(what, **SHORT))
+        asked = search_problem(search_for(what, **SHORT))
         if (
             search.show_none(asked, search_options or SearchOptions(effort=Effort(30))).verdict
             is Verdict.NONE_WITHIN
@@ -41,7 +41,12 @@ def test_drives_are_not_denied_without_a_fault():
     assert denied(SearchOptions(engine="smt", effort=Effort(30))) == []
 
 
-OWNERS = {"_Search": search._Search, "Assumptions": build.Assumptions, "build": build, "bounds": bounds}
+OWNERS = {
+    "_GridSearch": search._GridSearch,
+    "Assumptions": build.Assumptions,
+    "build": build,
+    "bounds": bounds,
+}
 FAULTS = read_table(__file__, "faults")
 
 
@@ -53,13 +58,16 @@ def test_a_fault_that_denies_a_drive_is_caught(fault, monkeypatch):
 
 
 def outcome(verdict, **changes):
-    return Outcome(None, "base", search_for("true").query, "main-2", verdict, "why", **changes)
+    return SearchOutcome(None, "base", search_for("true").query, "main-2", verdict, "why", **changes)
 
 
 ANSWERS = {
     "a drive": (replace(outcome(Verdict.WITNESSED), drives=({"drive": 1},)), Verdict.REFUTED),
     "a proof": (outcome(Verdict.IMPOSSIBLE, impossibility=Impossibility((), True, {}, {})), Verdict.PROVED),
-    "none": (outcome(Verdict.NONE_WITHIN, limits=posed(search_for("s(SV) > 0 m", **SHORT)).limits()), None),
+    "none": (
+        outcome(Verdict.NONE_WITHIN, limits=search_problem(search_for("s(SV) > 0 m", **SHORT)).limits()),
+        None,
+    ),
     "in doubt": (outcome(Verdict.UNKNOWN), Verdict.UNKNOWN),
 }
 
@@ -68,7 +76,7 @@ def answered(monkeypatch):
     """What is said of a claim for each answer to its negation."""
     said = {}
     for name, (answer, _) in ANSWERS.items():
-        monkeypatch.setattr(bounded, "ask", lambda request, answer=answer: answer)
+        monkeypatch.setattr(bounded, "search_drive", lambda request, answer=answer: answer)
         monkeypatch.setattr(bounded, "falsifying_drive", lambda *_: None)
         said[name] = bounded.check_bounded(search_for("v_lon(SV) >= 0 m/s", **SHORT)).verdict
     return said
@@ -88,32 +96,37 @@ def test_a_doubt_taken_for_a_bounded_proof_is_caught(monkeypatch):
 
 
 DOUBTS = {
-    "an answer that did not come": (search._Search, "none", "if not by:", "if False:"),
+    "an answer that did not come": (search._GridSearch, "none", "if not by:", "if False:"),
     "a solver that gave up": (
-        search._Search,
+        search._GridSearch,
         "_refute",
         'exact.status == "infeasible"',
         'exact.status != "found"',
     ),
     "a relaxation that was not decided": (
-        *(search._Search, "_refute", 'relaxed.status == "infeasible"', 'relaxed.status != "found"'),
+        *(search._GridSearch, "_refute", 'relaxed.status == "infeasible"', 'relaxed.status != "found"'),
     ),
     "a drive that the judge refuses": (
-        *(search._Search, "none", "Verdict.UNKNOWN, None, complaint", "Verdict.NONE_WITHIN, None, complaint"),
+        *(
+            search._GridSearch,
+            "none",
+            "Verdict.UNKNOWN, None, complaint",
+            "Verdict.NONE_WITHIN, None, complaint",
+        ),
     ),
 }
 
 
 def doubted(monkeypatch):
     """The verdicts where solvers give up, and where the judge refuses what they found."""
-    asked = posed(search_for("s(SV) = 30 m", **SHORT))
+    asked = search_problem(search_for("s(SV) = 30 m", **SHORT))
     said = set()
     with monkeypatch.context() as solvers:
-        solvers.setattr(search, "solve_mixed", lambda *_, **__: search.Solution("unknown"))
-        solvers.setattr(search, "solve_exactly", lambda *_, **__: search.Solution("unknown"))
+        solvers.setattr(search, "solve_mixed", lambda *_, **__: search.ColumnValues("unknown"))
+        solvers.setattr(search, "solve_exactly", lambda *_, **__: search.ColumnValues("unknown"))
         said.add(search.show_none(asked, SearchOptions(effort=Effort(30))).verdict)
     with monkeypatch.context() as refusing:
-        refusing.setattr(search._Search, "_complaint", lambda *_: "no")
+        refusing.setattr(search, "complaint_about", lambda *_: "no")
         said.add(search.show_none(asked, SearchOptions(effort=Effort(30))).verdict)
     return said
 

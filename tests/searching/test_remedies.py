@@ -9,17 +9,17 @@ from random import Random
 import pytest
 
 import roadproof as rp
-from roadproof.engines.prove.doubt import NO_REMEDY, Cause, Doubt, Remedy, Stop, doubt_of
+from roadproof.engines.prove.unknown import NO_REMEDY, Cause, Remedy, StopPoint, UnknownReport, unknown_report
 from roadproof.engines.search.batches import Engines
-from roadproof.engines.search.remedy import remedy_of
+from roadproof.engines.search.remedy import find_remedy
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.settings.option import Settings
 from roadproof.frontends.settings.questions import Prove
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.motion import split
-from roadproof.questions import settle
-from roadproof.reasons import Why
+from roadproof.library.motion import split_claim
+from roadproof.questions import decide
+from roadproof.reasons import ReasonKind
 from roadproof.runtime.budget import Effort
 
 HOME = bundled_library().select()
@@ -84,11 +84,11 @@ def generated() -> tuple[str, ...]:
     return tuple(random_claim(random) for _ in range(RANDOM))
 
 
-def doubtful(claim: str, cause: Cause) -> Doubt:
+def doubtful(claim: str, cause: Cause) -> UnknownReport:
     """The doubt about a claim as a study has it; ``said``: what it is asked under."""
-    said, plain = split(claim)
-    query = read_claim(HOME, plain)
-    return Doubt(cause, ("proof",), 5.0, option=remedy_of(HOME, query, said, cause), seconds=30.0)
+    said, claim_text = split_claim(claim)
+    query = read_claim(HOME, claim_text)
+    return UnknownReport(cause, ("proof",), 5.0, option=find_remedy(HOME, query, said, cause), seconds=30.0)
 
 
 def ask(claim: str, options: tuple[str, ...], capsys) -> dict:
@@ -102,7 +102,7 @@ def ask(claim: str, options: tuple[str, ...], capsys) -> dict:
 
 def followed(claim: str, remedy: Remedy, given: tuple[str, ...], capsys) -> dict:
     """The answer to a claim with the options of a remedy, in the place of those that were ``given``."""
-    asked = split(claim)[1] if remedy.without_assumptions else claim
+    asked = split_claim(claim)[1] if remedy.without_assumptions else claim
     return ask(asked, (*given, *remedy.options), capsys)
 
 
@@ -115,8 +115,11 @@ def check(claim: str, capsys) -> None:
     """For each cause that a claim can have: a remedy is about the claim, whatever its cause is."""
     for remedy in {doubtful(claim, x).remedy for x in BY_FORM} - {None}:
         assert remedy.options
-        assert all(x in remedy.told for x in remedy.options)
-        before, entry = split(claim)[0], followed(claim, remedy, ("--effort", "0.02", "--jobs", "1"), capsys)
+        assert all(x in remedy.text for x in remedy.options)
+        before, entry = (
+            split_claim(claim)[0],
+            followed(claim, remedy, ("--effort", "0.02", "--jobs", "1"), capsys),
+        )
         is_bounded = "--engine" in remedy.options
         assert is_bounded or "--declared" in remedy.options or len(entry["assuming"]) > len(before)
         assert not remedy.without_assumptions or not entry.get("assuming")
@@ -179,19 +182,21 @@ def test_more_work_is_more_work(capsys):
 def test_what_more_work_helps_gets_more_work_or_time_or_a_process_of_its_own(cause, options, capsys):
     doubt = doubtful(CLAIMS[0], cause)
     assert doubt.option is None
-    assert doubt.remedy.options == doubt.kept.options == options
+    assert doubt.remedy.options == doubt.data.options == options
     assert ask("v_lon(SV) > 9 m/s -> v_lon(SV) > 8 m/s", options, capsys)["verdict"] == "PROVED"
 
 
 def test_the_seconds_of_a_doubt_are_those_of_the_clock():
     query = read_claim(HOME, CLAIMS[0])
-    told = [doubt_of(query, (), Stop.CLOCK, x, True).remedy.options for x in (Effort(5, 7), Effort(60))]
+    told = [
+        unknown_report(query, (), StopPoint.CLOCK, x, True).remedy.options for x in (Effort(5, 7), Effort(60))
+    ]
     assert told == [("--timeout", "28"), ("--timeout", "14400")]
 
 
 def test_a_claim_whose_process_ended_is_asked_alone(monkeypatch):
-    monkeypatch.setattr(Engines, "settle", lambda *_: os._exit(7))
-    monkeypatch.setattr(settle, "is_fork_unsafe", lambda: False)
+    monkeypatch.setattr(Engines, "answer_claim", lambda *_: os._exit(7))
+    monkeypatch.setattr(decide, "is_fork_unsafe", lambda: False)
     found, _ = rp.prove("v_lon(SV) > 9 m/s", "v_lon(SV) > 8 m/s", jobs=2, fresh=True).as_data()["verdicts"]
     assert (found["verdict"], found["doubt"]["cause"]) == ("UNKNOWN", "process")
     assert found["doubt"]["options"] == ["--jobs", "1"]
@@ -203,9 +208,9 @@ def test_no_remedy_is_named_where_none_is_known(cause):
     doubt = doubtful("given x: m/s: v_lon(SV) > x -> F v_lon(SV) < x", cause)
     if doubt.remedy is None:
         assert str(doubt).endswith(f"more work does not help, and {NO_REMEDY}")
-        assert (doubt.kept.remedy, doubt.kept.options) == ("", ())
+        assert (doubt.data.remedy, doubt.data.options) == ("", ())
     else:
-        assert str(doubt).endswith(f"more work does not help: {doubt.remedy.told}")
+        assert str(doubt).endswith(f"more work does not help: {doubt.remedy.text}")
 
 
 def test_every_option_that_a_reason_names_is_one_of_a_command():
@@ -216,7 +221,7 @@ def test_every_option_that_a_reason_names_is_one_of_a_command():
 
     flags = {x.flag for settings in every(Settings) for x in settings.options().values()}
     assert {y.flag for y in Prove.options().values()} <= flags
-    for kind in Why:
+    for kind in ReasonKind:
         for flag in re.findall(r"(?<![\w-])--[a-z][a-z-]*", kind.value):
             assert flag in flags, (kind.name, flag)
 
@@ -224,18 +229,18 @@ def test_every_option_that_a_reason_names_is_one_of_a_command():
 def test_limits_are_those_of_a_vehicle_that_the_claim_mentions():
     for name in ("SV", "POV", "POV2"):
         query = read_claim(HOME, f"s({name}) <= 0 m -> G[1 s, 1 s] s({name}) <= 9 m")
-        assert f"{name}=car" in remedy_of(HOME, query, ("motion",), Cause.FACTS).options
+        assert f"{name}=car" in find_remedy(HOME, query, ("motion",), Cause.FACTS).options
 
 
 def test_motion_that_is_assumed_is_not_named_again():
     query = read_claim(HOME, CLAIMS[0])
-    assert "motion" in remedy_of(HOME, query, (), Cause.FIRST_INSTANT).options
-    assert "motion" not in remedy_of(HOME, query, ("motion",), Cause.FIRST_INSTANT).options
+    assert "motion" in find_remedy(HOME, query, (), Cause.FIRST_INSTANT).options
+    assert "motion" not in find_remedy(HOME, query, ("motion",), Cause.FIRST_INSTANT).options
 
 
 def test_limits_that_are_there_are_not_named_again():
     query = read_claim(HOME, "s(SV) <= 0 m -> G[1 s, 1 s] s(SV) <= 9 m")
-    found = remedy_of(HOME, query, ("motion", "v_lon(SV) <= 30 m/s"), Cause.FACTS)
+    found = find_remedy(HOME, query, ("motion", "v_lon(SV) <= 30 m/s"), Cause.FACTS)
     assert "--vehicle" not in found.options
 
 

@@ -9,14 +9,15 @@ import pytest
 
 import roadproof as rp
 from planting import plant
-from roadproof.engines.search import initial_candidates, refute, sampling, search, settle
-from roadproof.engines.search.ask import answer, reads_all
-from roadproof.engines.search.initial_candidates import space_of, unread
-from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.question import SearchOptions, Setting, pose
+from roadproof.engines.search import decide, initial_candidates, refute, sampling, search
+from roadproof.engines.search.decide import decide_claim as settled
+from roadproof.engines.search.drive_search import engine_reads_all
+from roadproof.engines.search.initial_candidates import not_encodable, space_of
+from roadproof.engines.search.question import pose
 from roadproof.engines.search.refute import sampled_drive
 from roadproof.engines.search.sampling import Space, holds, states
-from roadproof.engines.search.settle import settle as settled
+from roadproof.engines.setting import Search, SearchOptions, Setting
+from roadproof.extensions.catalogue.completing import search_drive_or_unknown
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
@@ -26,7 +27,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.rewrite import is_cubic_state, signals_of
 from roadproof.logic.terms import Signal, Size
 from roadproof.runtime.budget import Effort
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from roadproof.verdict import Verdict
 from roadproof.world.models import load_road
 
@@ -41,16 +42,18 @@ def asked(text, units=20, home=HOME, **setting):
 
 
 def question(text, **setting):
-    posed = asked(text, **setting)
-    return pose(HOME.library, posed.query, posed.setting)
+    search_problem = asked(text, **setting)
+    return pose(HOME.library, search_problem.query, search_problem.setting)
 
 
 def found_starts(text, most=6):
-    posed = question(text)
-    return posed, [
+    search_problem = question(text)
+    return search_problem, [
         (lanes, start)
-        for lanes in posed.lanes
-        for start in initial_candidates.starts(posed, lanes, unread(posed, lanes), most)
+        for lanes in search_problem.lanes
+        for start in initial_candidates.sampled_starts(
+            search_problem, lanes, not_encodable(search_problem, lanes), most
+        )
     ]
 
 
@@ -66,20 +69,20 @@ def found_starts(text, most=6):
     ],
 )
 def test_which_parts_are_not_read(text, count):
-    posed = question(text)
-    assert {len(unread(posed, lanes)) for lanes in posed.lanes} == {count}
-    assert reads_all(asked(text)) == (count == 0)
+    search_problem = question(text)
+    assert {len(not_encodable(search_problem, lanes)) for lanes in search_problem.lanes} == {count}
+    assert engine_reads_all(asked(text)) == (count == 0)
 
 
 @pytest.mark.parametrize("text", [f"{CUBE} and {GAP}", f"scenario_4(SV,POV,L) and {CUBE} and {GAP}"])
 def test_a_start_implies_what_it_stands_for(text):
     """Any state that keeps its conditions, judged: at both ends of its interval and between."""
-    posed, found = found_starts(text)
-    space = space_of(posed)
+    search_problem, found = found_starts(text)
+    space = space_of(search_problem)
     assert found
     for lanes, start in found:
-        parts = f.conjunction(*unread(posed, lanes))
-        assert start.replaced == set(unread(posed, lanes))
+        parts = f.conjunction(*not_encodable(search_problem, lanes))
+        assert start.replaced == set(not_encodable(search_problem, lanes))
         wide = 0
         for share in (Fraction(0), Fraction(1, 3), Fraction(1)):
             state = {x: Fraction(7) for x in space.ranges}
@@ -89,7 +92,13 @@ def test_a_start_implies_what_it_stands_for(text):
                 wide += x.low < x.high
             assert holds(parts, state, space.sizes)
         assert wide == 3
-        assert set(signals_of([start.without(posed.bound(lanes))])) <= {"s", "d", "v_lon", "v_lat", "a_lon"}
+        assert set(signals_of([start.without(search_problem.bound(lanes))])) <= {
+            "s",
+            "d",
+            "v_lon",
+            "v_lat",
+            "a_lon",
+        }
 
 
 @pytest.mark.parametrize(
@@ -101,7 +110,7 @@ def test_a_start_implies_what_it_stands_for(text):
     ],
 )
 def test_a_drive_is_found_and_judged_on_all_of_the_formula(text):
-    outcome = answer(asked(text))
+    outcome = search_drive_or_unknown(asked(text))
     assert outcome.verdict is Verdict.WITNESSED
     [judged] = outcome.drives
     assert judged.judgement.holds
@@ -110,13 +119,13 @@ def test_a_drive_is_found_and_judged_on_all_of_the_formula(text):
 
 def test_the_same_drive_every_time():
     text = f"{CUBE} and {GAP} and F v_lon(SV) < 20 m/s"
-    one, other = (answer(asked(text)).drives[0].as_data() for _ in range(2))
+    one, other = (search_drive_or_unknown(asked(text)).drives[0].as_data() for _ in range(2))
     assert one == other
 
 
 def test_where_no_start_gives_a_drive_nothing_is_denied():
     """No drive is that fast so soon; yet only some starts were tried, so it is no NONE-WITHIN."""
-    outcome = answer(asked(f"{CUBE} and F[0.6 s, 0.6 s] v_lon(SV) > v_lon(POV) + 30 m/s"))
+    outcome = search_drive_or_unknown(asked(f"{CUBE} and F[0.6 s, 0.6 s] v_lon(SV) > v_lon(POV) + 30 m/s"))
     assert outcome.verdict is Verdict.UNKNOWN
     assert outcome.limits is None
     assert "sampled states" in outcome.reason
@@ -124,46 +133,56 @@ def test_where_no_start_gives_a_drive_nothing_is_denied():
 
 
 def test_where_no_state_is_found_nothing_is_denied():
-    outcome = answer(asked("v_lon(SV)*v_lon(SV)*v_lon(SV) > 64000.5*(1 m/s)*(1 m/s)*(1 m/s)"))
+    outcome = search_drive_or_unknown(
+        asked("v_lon(SV)*v_lon(SV)*v_lon(SV) > 64000.5*(1 m/s)*(1 m/s)*(1 m/s)")
+    )
     assert outcome.verdict is Verdict.UNKNOWN
     assert "no state in which it holds was found" in outcome.reason
 
 
 def test_a_proof_that_there_is_none_stays_possible():
-    outcome = answer(asked("v_lon(SV)^3 < v_lon(POV)^3 and v_lon(SV)^3 > v_lon(POV)^3 and F danger(SV,POV)"))
+    outcome = search_drive_or_unknown(
+        asked("v_lon(SV)^3 < v_lon(POV)^3 and v_lon(SV)^3 > v_lon(POV)^3 and F danger(SV,POV)")
+    )
     assert outcome.verdict is Verdict.IMPOSSIBLE
 
 
 # The interval is where the part does not hold; nothing is asked of the start at all.
 FAULTS = {
     "the interval is wrong": (
-        *(initial_candidates, "_free", "return inner if inner[0] <= value <= inner[1] else (value, value)"),
+        *(
+            initial_candidates,
+            "_free_range",
+            "return inner if inner[0] <= value <= inner[1] else (value, value)",
+        ),
         "return value + 20, value + 21",
     ),
-    "no conditions": (initial_candidates, "conditions", "return tuple(found)", "return ()"),
+    "no conditions": (initial_candidates, "start_conditions", "return tuple(made)", "return ()"),
 }
 NEAR = "(s(POV) - s(SV))^3 < 3375*(1 m)*(1 m)*(1 m) and (s(POV) - s(SV))^3 > 125*(1 m)*(1 m)*(1 m)"
 FAST = "v_lon(SV)^3 > 59319*(1 m/s)*(1 m/s)*(1 m/s) and F v_lon(SV) < v_lon(POV)"
 
 
 def test_without_a_fault_there_is_a_drive():
-    assert answer(asked(f"{NEAR} and {FAST}", 1)).verdict is Verdict.WITNESSED
+    assert search_drive_or_unknown(asked(f"{NEAR} and {FAST}", 1)).verdict is Verdict.WITNESSED
 
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_start_that_implies_too_little_is_caught_by_the_judge(fault, monkeypatch):
     plant(monkeypatch, *FAULTS[fault])
     monkeypatch.setattr(search, "STARTS", 2)
-    outcome = answer(asked(f"{NEAR} and {FAST}", 1))
+    outcome = search_drive_or_unknown(asked(f"{NEAR} and {FAST}", 1))
     assert (outcome.verdict, outcome.drives) == (Verdict.UNKNOWN, ())
 
 
 def test_a_search_with_a_start_never_says_that_there_is_none():
-    posed, found = found_starts(f"{CUBE} and {GAP}")
+    search_problem, found = found_starts(f"{CUBE} and {GAP}")
     lanes, start = found[0]
-    begun = replace(posed, start=start, lanes=(lanes,))
+    begun = replace(search_problem, start=start, lanes=(lanes,))
     impossible = replace(begun, query=read_query(HOME, f"{CUBE} and {GAP} and v_lon(SV) > 100 m/s")[1])
-    assert search._Search(impossible, SearchOptions(effort=Effort(5)), ()).run().verdict is Verdict.UNKNOWN
+    assert (
+        search._GridSearch(impossible, SearchOptions(effort=Effort(5)), ()).run().verdict is Verdict.UNKNOWN
+    )
 
 
 # --- Claims about one instant that no engine reads: refuted from a sampled state, by a drive that is judged
@@ -226,13 +245,13 @@ def test_a_state_in_which_the_claim_is_true_is_no_refutation(monkeypatch):
 
 def test_what_a_proof_does_not_decide_quickly_is_sampled(monkeypatch):
     """With no work for z3 the drive comes from a sampled state; with none for samples it stays in doubt."""
-    monkeypatch.setattr(settle, "BRIEF", 1e-6)
+    monkeypatch.setattr(decide, "BRIEF", 1e-6)
     monkeypatch.setattr("roadproof.engines.search.refute.quick_drive", lambda *_: None)
     found = settled(HOME, claim(FALSE), Effort(2e-6))
     assert found.verdict is Verdict.REFUTED
     assert found.refuted_by == "drive"
-    monkeypatch.setattr(settle._Settler, "_quick", lambda _: None)
-    monkeypatch.setattr(settle._Settler, "_searched", lambda *_: None)
+    monkeypatch.setattr(decide._Decider, "_quick", lambda _: None)
+    monkeypatch.setattr(decide._Decider, "_searched", lambda *_: None)
     assert settled(HOME, claim(FALSE), Effort(2e-6)).verdict is Verdict.UNKNOWN
 
 

@@ -8,16 +8,16 @@ from itertools import pairwise
 import pytest
 
 import roadproof as rp
-from asking import posed, search_for
-from roadproof.engines.encode.motion import Layout
+from engine_calls import search_for, search_problem
+from roadproof.engines.encode.motion import ColumnLayout
 from roadproof.engines.encode.problem import evaluate
 from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.search import search
-from roadproof.engines.search.ask import ask
-from roadproof.engines.search.initial_conditions import CLEARLY, differ
-from roadproof.engines.search.question import SearchOptions
+from roadproof.engines.search.drive_search import search_drive
+from roadproof.engines.search.initial_conditions import CLEARLY, differs_from
 from roadproof.engines.search.search import find_witness, show_none
 from roadproof.engines.search.shape import _with_margin
+from roadproof.engines.setting import SearchOptions
 from roadproof.engines.solve.bounds import Affine, Bound
 from roadproof.engines.solve.smooth import minimise
 from roadproof.errors import UsageError
@@ -30,14 +30,14 @@ from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Motion, Piece, value_at
 from roadproof.world.models import load_road, load_vehicle
-from roadproof.world.motion import starts_of, state_at
+from roadproof.world.motion import piece_starts, state_at
 
 LIBRARY = bundled_library()
 MEANS = SearchOptions(effort=Effort(30))
 
 
 def ask_for(what, set_name="base", **changes):
-    return ask(search_for(what, set_name, **changes))
+    return search_drive(search_for(what, set_name, **changes))
 
 
 def drive_of(outcome, k=0):
@@ -52,7 +52,7 @@ def gap(file, ahead, behind, time):
 def lateral_spells(motion):
     """How long each movement across the road lasts, in s."""
     spells, begun = [], None
-    for state in starts_of(motion):
+    for state in piece_starts(motion):
         if begun is None and (state.v_lat or state.a_lat):
             begun = state.time
         if begun is not None and not state.v_lat and not state.a_lat:
@@ -81,10 +81,10 @@ def test_scenarios_have_natural_judged_drives(scenario, set_name):
     for motion in file.drive.vehicles.values():
         pieces = motion.pieces
         assert all(abs(b.a_lon - a.a_lon) <= 3 for a, b in pairwise(pieces))
-        assert all(state.v_lon >= 15 for state in starts_of(motion))
+        assert all(state.v_lon >= 15 for state in piece_starts(motion))
         spells = lateral_spells(motion)  # of one lane change, in one direction
         assert not spells or 2 <= sum(spells) <= 6
-        for state in starts_of(motion):
+        for state in piece_starts(motion):
             assert abs(state.v_lat) * 10 <= state.v_lon
 
 
@@ -133,7 +133,7 @@ def test_overlapping_scenarios_have_a_drive_and_exclusive_ones_a_proof():
     never = ask_for("scenario_1(SV,POV,L) and scenario_4(SV,POV,L)")
     assert never.verdict is Verdict.IMPOSSIBLE
     assert never.impossibility is not None
-    assert "not sameLane(POV, SV, L)" in never.impossibility.told
+    assert "not sameLane(POV, SV, L)" in never.impossibility.core_texts
     assert never.impossibility.minimal
 
 
@@ -216,7 +216,7 @@ def test_requests_that_make_no_sense(changes, message):
     ],
 )
 def test_the_step_is_the_coarsest_that_fits(what, horizon, dt, steps):
-    assert posed(search_for(what, horizon=Fraction(horizon))).grid == Grid(dt, steps)
+    assert search_problem(search_for(what, horizon=Fraction(horizon))).grid == Grid(dt, steps)
 
 
 def test_more_lanes_than_a_search_can_try_are_refused_at_once():
@@ -233,7 +233,7 @@ def test_a_formula_without_vehicles_shows_nothing():
         ask_for("true")
 
 
-# --- Own signals and kinds in drives and proofs: found, written, read, and refused where they were changed
+# --- Custom signals and kinds in drives and proofs: found, written, read, and refused where they were changed
 
 SPEC = """
 signal red: bool
@@ -312,7 +312,7 @@ def test_a_no_names_the_ranges_that_were_tried():
     assert rp.witness(wide, using=HOME, effort=5).drives  # the largest number widens the range
     clash = "kind(SV) = truck and F v_lon(SV) > 30 m/s or jerk(SV) > 10 m/s^3 and red"
     none = rp.witness(clash, using=HOME, effort=5)
-    told = "own signals constant between samples, jerk(SV) in [-10, 10] m/s^3, red in false or true"
+    told = "custom signals constant between samples, jerk(SV) in [-10, 10] m/s^3, red in false or true"
     assert told in str(none)
     assert none.as_data()["verdicts"][0]["limits"]["signals"]["red"] == "false or true"
 
@@ -353,7 +353,7 @@ def test_recast_drives_keep_own_signals():
     still = Motion(*map(Fraction, (4, 2, 0, 3, 20, 0)), (Piece(None, Fraction(0), Fraction(0)),))
     red, jerk = ((Fraction(0), Fraction(1)),), ((Fraction(0), Fraction(2)), (Fraction(1), Fraction(3)))
     drive = Drive({"SV": still, "POV": still}, {("red", ""): red, ("jerk", "POV"): jerk})
-    assert drive.cast({"A": "POV", "B": "SV"}).own == {("red", ""): red, ("jerk", "A"): jerk}
+    assert drive.cast({"A": "POV", "B": "SV"}).custom_signals == {("red", ""): red, ("jerk", "A"): jerk}
     assert [value_at(jerk, Fraction(x, 2)) for x in range(4)] == [2, 2, 3, 3]
 
 
@@ -361,7 +361,7 @@ def test_recast_drives_keep_own_signals():
 
 
 def question(what, **changes):
-    return posed(search_for(what, **changes))
+    return search_problem(search_for(what, **changes))
 
 
 def tried(monkeypatch, doubt, refinements):
@@ -370,9 +370,9 @@ def tried(monkeypatch, doubt, refinements):
 
     def attempt(self, lanes, grid, assumptions):
         steps.append(grid.dt)
-        self.doubt = doubt
+        self.unknown = doubt
 
-    monkeypatch.setattr(search._Search, "_attempt", attempt)
+    monkeypatch.setattr(search._GridSearch, "_attempt", attempt)
     search_options = SearchOptions(refinements=refinements, explain=False)
     answer = find_witness(question("v_lon(SV) > 20 m/s", natural=False), search_options)
     assert answer.verdict is Verdict.UNKNOWN
@@ -389,7 +389,7 @@ def test_finer_grids_are_tried_where_there_is_a_doubt(monkeypatch):
 
 @pytest.mark.parametrize(("what", "shown"), [("v_lon(SV) > 20 m/s", "main-2"), ("atLane(SV, L)", "L=main-1")])
 def test_where_nothing_was_found_it_says_where(what, shown, monkeypatch):
-    monkeypatch.setattr(search._Search, "_refute", lambda self, problem: ("", None))
+    monkeypatch.setattr(search._GridSearch, "_refute", lambda self, problem: ("", None))
     answer = show_none(question(what, horizon=Fraction(6, 5)), SearchOptions())
     assert answer.verdict is Verdict.UNKNOWN
     assert answer.reason.endswith(f"with the work given for {shown}")
@@ -418,7 +418,7 @@ def test_no_fact_keeps_less_than_the_least_margin():
 
 def test_vehicles_clearly_apart_across_are_in_different_lanes():
     """From one side of a lane to the other is no other drive, from lane to lane is."""
-    car, layout = load_vehicle("car"), Layout(("SV",), Grid(Fraction(1), 1))
+    car, layout = load_vehicle("car"), ColumnLayout(("SV",), Grid(Fraction(1), 1))
     right, left = load_road("main-2").lanelets[0].d
     still = (Piece(None, Fraction(0), Fraction(0)),)
     start = right + car.width
@@ -426,5 +426,5 @@ def test_vehicles_clearly_apart_across_are_in_different_lanes():
     for d, clearly in ((left, False), (start + left - right, True)):
         signals = {"s": (0, 20), "d": (d, d), "v_lon": (20, 20), "v_lat": (0, 0)}
         values = {layout.column("SV", x, k): Fraction(pair[k]) for x, pair in signals.items() for k in (0, 1)}
-        made = differ(layout, other)
+        made = differs_from(layout, other)
         assert evaluate(made, lambda x, v=values: x.polynomial.value(lambda c: v[c]) >= 0) == clearly

@@ -11,7 +11,8 @@ import sys
 import time
 from pathlib import Path
 
-from roadproof.runtime.archives import SWITCH, archived, ship
+from roadproof.runtime.archives import SWITCH, shipped_answers
+from shipping.archive import ship
 from shipping.questions import QUESTIONS, Texts, texts_of
 
 FOLDER = Path(__file__).parents[2] / "proofs/known"
@@ -39,7 +40,7 @@ def main() -> int:
 def _put(found: Texts, check: bool, told: str, begun: float) -> int:
     """Add the answers to a question to those of its kind, or compare them; the number that differ."""
     answers = found.texts
-    there = archived(found.kind)
+    there = shipped_answers(found.kind)
     wrong = [key for key, text in answers.items() if there.get(key) != text] if check else []
     if check:
         print(

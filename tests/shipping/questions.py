@@ -1,21 +1,26 @@
 """The questions whose answers come with roadproof, each with its default settings."""
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import roadproof as rp
-from roadproof.evidence.answer import Answer, answer_data
+from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.claim import Claim
-from roadproof.extensions.surveys.classify.division import DivisionQuestion, ToDivide
+from roadproof.extensions.surveys.classify.division import DivisionQuestion, DivisionSettings
 from roadproof.extensions.surveys.classify.question import question_of
 from roadproof.extensions.surveys.classify.simulated import shares_key, shares_text, simulated_shares
 from roadproof.extensions.surveys.settings import Classify
 from roadproof.frontends.api.settings import basis_of
 from roadproof.library.scenarios import numbers_of
-from roadproof.questions.question import Answers, Batch, Question, walk
-from roadproof.questions.settle import settle, store_of
+from roadproof.questions.decide import decide_claims, store_of
+from roadproof.questions.question import (
+    Answers,
+    EarlierAnswers,
+    Question,
+    QuestionBatch,
+    walk_with_earlier,
+)
 from roadproof.questions.store import Store
 
 SETS = ("base", "extA", "ext")
@@ -36,35 +41,38 @@ Ask = Callable[..., Any]
 def _dividing() -> DivisionQuestion:
     home, given = rp.load(), Classify.of({})
     basis = basis_of(home, given, given.vehicles)
-    return DivisionQuestion(basis, ToDivide(scenarios=tuple(numbers_of(home.alone))))
+    return DivisionQuestion(basis, DivisionSettings(scenarios=tuple(numbers_of(home.alone))))
 
 
 def texts_of(question: Question[Any], answers: Answers) -> Texts:
-    """The answers to a question that stand for ever."""
+    """The answers to a question that stand: with evidence, or undecided after counted work."""
     store = Store(None, question.kind, question.work)
     texts: dict[str, str] = {}
     for batch in question.batches(answers):
 
-        def find(name: str, claim: Claim, batch: Batch = batch) -> Answer | None:
-            found = answers.get(name)
-            if found is not None and found.is_final:
-                texts[store_of(batch, store, name).key(claim)] = json.dumps(answer_data(found))
+        def find(
+            name: str, claim: Claim, earlier: EarlierAnswers, batch: QuestionBatch = batch
+        ) -> ClaimAnswer | None:
+            found, own = answers.get(name), store_of(batch, store, name)
+            if found is not None and own.stands(found):
+                key, text = own.shipped_text(found, earlier)
+                texts[key] = text
             return found
 
-        [*walk(batch, find)]
+        [*walk_with_earlier(batch, find)]
     return Texts(question.kind, texts)
 
 
 def divide(jobs: int | None = None) -> Texts:
     """The proofs for the cells of the classes, which ``classify`` and ``catalogue`` begin with."""
     question = _dividing()
-    return texts_of(question, settle(question, hands=jobs).answers)
+    return texts_of(question, decide_claims(question, executor=jobs).answers)
 
 
 def count_shares(jobs: int | None = None) -> Texts:
     """The shares of the classes in a simulated recording."""
     question = _dividing()
-    made = question_of(question.basis, question.view(settle(question, hands=jobs).answers))
+    made = question_of(question.basis, question.view(decide_claims(question, executor=jobs).answers))
     shares = simulated_shares(made.basis, made.classes)
     assert not shares.broken
     return Texts("shares", {shares_key(made.basis, made.classes): shares_text(shares)})

@@ -4,17 +4,17 @@ import random
 from fractions import Fraction
 
 from roadproof.engines.encode.problem import (
-    Column,
     Inequality,
     Leaf,
     Problem,
+    RealColumn,
     Row,
     Unknown,
     all_of,
     any_of,
     evaluate,
 )
-from roadproof.engines.solve.bounds import approximate, value_of
+from roadproof.engines.solve.bounds import affine_bounds, polynomial_value
 from roadproof.engines.solve.exact import solve_exactly
 from roadproof.runtime.budget import Effort
 from roadproof.world.polynomial import affine, variable
@@ -30,7 +30,7 @@ def problems(count, quadratic=False, seed=1):
 
 def problem(dice, quadratic):
     columns = tuple(
-        Column(Unknown("x", "s", k), Fraction(-4), Fraction(dice.randint(1, 6))) for k in range(COLUMNS)
+        RealColumn(Unknown("x", "s", k), Fraction(-4), Fraction(dice.randint(1, 6))) for k in range(COLUMNS)
     )
     terms = {0: Fraction(1), 1: Fraction(-2), 2: Fraction(1)}
     rows = (Row(terms, Fraction(-3), Fraction(dice.randint(0, 4))),)
@@ -70,11 +70,11 @@ def approximation_holds(made, point):
 
 def inner_is_safe(inequality, box, pieces=1):
     """Wherever the inner approximation holds, the inequality does."""
-    made = approximate(inequality, box, "inner", pieces)
-    return all(value_of(inequality, p) >= -1e-6 for p in grid_of(box) if approximation_holds(made, p))
+    made = affine_bounds(inequality, box, "inner", pieces)
+    return all(polynomial_value(inequality, p) >= -1e-6 for p in grid_of(box) if approximation_holds(made, p))
 
 
 def outer_is_safe(inequality, box, pieces=1):
     """Wherever the inequality holds, the outer approximation does."""
-    made = approximate(inequality, box, "outer", pieces)
-    return all(approximation_holds(made, p) for p in grid_of(box) if value_of(inequality, p) >= 0)
+    made = affine_bounds(inequality, box, "outer", pieces)
+    return all(approximation_holds(made, p) for p in grid_of(box) if polynomial_value(inequality, p) >= 0)

@@ -8,22 +8,22 @@ import cvxpy
 import pytest
 
 from roadproof.engines.encode.problem import (
-    Column,
+    ColumnValues,
     Inequality,
     Leaf,
     Problem,
+    RealColumn,
     Row,
-    Solution,
     Unknown,
     all_of,
     any_of,
 )
 from roadproof.engines.solve import exact, milp, smt
 from roadproof.engines.solve.exact import solve_exactly
-from roadproof.engines.solve.highs import Answer
-from roadproof.engines.solve.milp import box_of, solve_mixed
-from roadproof.engines.solve.recall import solve
-from roadproof.engines.solve.smt import Session, ask
+from roadproof.engines.solve.highs import SolverReply
+from roadproof.engines.solve.milp import column_box, solve_mixed
+from roadproof.engines.solve.recall import find_model
+from roadproof.engines.solve.smt import Session, check_sat
 from roadproof.runtime import budget
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.world.polynomial import affine
@@ -51,7 +51,7 @@ def either(column):
 def split(seed=7):
     """Which columns sum up to numbers that some of them are known to sum up to: there are, hard to find."""
     dice = random.Random(seed)
-    columns = tuple(Column(Unknown("x", "s", k), Fraction(0), Fraction(1)) for k in range(COLUMNS))
+    columns = tuple(RealColumn(Unknown("x", "s", k), Fraction(0), Fraction(1)) for k in range(COLUMNS))
     answer = [dice.randint(0, 1) for _ in range(COLUMNS)]
     rows = []
     for _ in range(ROWS):
@@ -78,13 +78,13 @@ def cut_off():
     session.tell(pigeons(15, 14))
     yield session.check(meter=LITTLE.meter())
     yield session.check_plainly(LITTLE.meter())
-    yield ask(pigeons(7, 7) + "(check-sat)", meter=LITTLE.meter())
-    yield ask(pigeons(15, 14) + "(check-sat)", "cvc5", LITTLE.meter())
-    yield "unknown" if solve(pigeons(7, 7) + "(check-sat)", ["p0_0"], LITTLE.meter()) is None else "sat"
+    yield check_sat(pigeons(7, 7) + "(check-sat)", meter=LITTLE.meter())
+    yield check_sat(pigeons(15, 14) + "(check-sat)", "cvc5", LITTLE.meter())
+    yield "unknown" if find_model(pigeons(7, 7) + "(check-sat)", ["p0_0"], LITTLE.meter()) is None else "sat"
     yield solve_exactly(split(), LITTLE.meter()).status
     for solver in ("highs", "scipy"):
         problem = split()
-        yield solve_mixed(problem, box_of(problem), solver=solver, meter=LITTLE.meter()).status
+        yield solve_mixed(problem, column_box(problem), solver=solver, meter=LITTLE.meter()).status
 
 
 def says_more_than_unknown():
@@ -101,22 +101,22 @@ def test_what_is_cut_off_by_work_is_unknown():
 
 def test_the_same_questions_have_answers():
     """Else the test above would show nothing."""
-    assert ask(pigeons(7, 7) + "(check-sat)", meter=Effort(60).meter()) == "sat"
-    assert ask(pigeons(8, 7) + "(check-sat)", meter=Effort(60).meter()) == "unsat"
+    assert check_sat(pigeons(7, 7) + "(check-sat)", meter=Effort(60).meter()) == "sat"
+    assert check_sat(pigeons(8, 7) + "(check-sat)", meter=Effort(60).meter()) == "unsat"
     few = split()
     small = Problem(few.columns[:8], (), all_of(either(k) for k in range(8)))
-    assert solve_exactly(small).status == solve_mixed(small, box_of(small)).status == "found"
+    assert solve_exactly(small).status == solve_mixed(small, column_box(small)).status == "found"
 
 
 def test_work_is_counted_and_is_the_same_each_time():
     spent = []
     for _ in range(2):
         meter = Effort(5).meter()
-        ask(pigeons(8, 7) + "(check-sat)", meter=meter)
+        check_sat(pigeons(8, 7) + "(check-sat)", meter=meter)
         spent.append(meter.spent)
     assert spent[0] == spent[1] > 0.01
     meter = LITTLE.meter()
-    ask(pigeons(15, 14) + "(check-sat)", meter=meter)
+    check_sat(pigeons(15, 14) + "(check-sat)", meter=meter)
     assert meter.left() == 0
 
 
@@ -124,14 +124,14 @@ def test_a_check_without_work_left_is_not_one_without_a_limit():
     meter = Effort(1).meter()
     meter.spend(1)
     session = Session()
-    assert session.check(meter=meter) == ask("(check-sat)", meter=meter) == "unknown"
-    assert ask("(check-sat)", "cvc5", meter) == solve_exactly(split(), meter).status == "unknown"
-    assert solve_mixed(split(), box_of(split()), meter=meter).status == "unknown"
+    assert session.check(meter=meter) == check_sat("(check-sat)", meter=meter) == "unknown"
+    assert check_sat("(check-sat)", "cvc5", meter) == solve_exactly(split(), meter).status == "unknown"
+    assert solve_mixed(split(), column_box(split()), meter=meter).status == "unknown"
 
 
 def test_more_work_than_z3_can_count_is_as_much_as_it_can():
     """It counts in 32 bits: with one more than these hold, it would stop at once."""
-    assert ask(pigeons(7, 7) + "(check-sat)", meter=Effort((2**32 + 1) / smt.UNIT).meter()) == "sat"
+    assert check_sat(pigeons(7, 7) + "(check-sat)", meter=Effort((2**32 + 1) / smt.UNIT).meter()) == "sat"
 
 
 def test_an_exact_search_starts_again_with_another_seed_and_twice_the_work(monkeypatch):
@@ -150,21 +150,21 @@ def test_an_exact_search_starts_again_with_another_seed_and_twice_the_work(monke
 @pytest.mark.parametrize("solver", ["z3", "cvc5"])
 def test_what_is_cut_off_by_the_clock_says_so(solver):
     with pytest.raises(BudgetExceeded, match="cut off by the clock"):
-        ask(pigeons(15, 14) + "(check-sat)", solver, Effort(4000, 0.2).meter())
+        check_sat(pigeons(15, 14) + "(check-sat)", solver, Effort(4000, 0.2).meter())
 
 
 def test_a_mixed_integer_search_cut_off_by_the_clock_says_so():
     problem = split()
     with pytest.raises(BudgetExceeded):
-        solve_mixed(problem, box_of(problem), meter=Effort(4000, 0.5).meter())
+        solve_mixed(problem, column_box(problem), meter=Effort(4000, 0.5).meter())
 
 
 @pytest.mark.parametrize("status", NO_ANSWERS)
 def test_no_status_but_infeasible_is_a_no(monkeypatch, status):
-    monkeypatch.setattr(milp, "_solve", lambda program, known, allowed: Answer(status))
+    monkeypatch.setattr(milp, "_solve", lambda program, known, allowed: SolverReply(status))
     problem = split()
     meter = Effort(3).meter()
-    assert solve_mixed(problem, box_of(problem), meter=meter) == Solution("unknown")
+    assert solve_mixed(problem, column_box(problem), meter=meter) == ColumnValues("unknown")
     assert meter.left() == 0
 
 
@@ -173,16 +173,16 @@ def test_what_is_no_solution_is_not_handed_out(monkeypatch, status):
     """HiGHS hands out a vector of zeros where it reaches a limit before it has found any."""
 
     def stop(program, known, allowed):
-        return Answer(status, 0 * program.box[:, 0])
+        return SolverReply(status, 0 * program.box[:, 0])
 
     monkeypatch.setattr(milp, "_solve", stop)
     problem = split()
-    assert solve_mixed(problem, box_of(problem)).status == "unknown"
+    assert solve_mixed(problem, column_box(problem)).status == "unknown"
 
 
 def test_what_was_found_when_the_clock_ended_the_search_is_not_used(monkeypatch):
     """It would be there on one machine, and not on another."""
-    column = (Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
+    column = (RealColumn(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
     problem = Problem(column, (), either(0))
     now = [0.0]
     monkeypatch.setattr(budget.time, "monotonic", lambda: now[0])
@@ -199,10 +199,10 @@ def test_what_was_found_when_the_clock_ended_the_search_is_not_used(monkeypatch)
 
     monkeypatch.setattr(milp, "_solve", solve_until("user_limit", 5.0))
     with pytest.raises(BudgetExceeded):
-        solve_mixed(problem, box_of(problem), meter=Effort(1, 4.0).meter())
-    assert solve_mixed(problem, box_of(problem), meter=Effort(1, 40.0).meter()).status == "found"
+        solve_mixed(problem, column_box(problem), meter=Effort(1, 4.0).meter())
+    assert solve_mixed(problem, column_box(problem), meter=Effort(1, 40.0).meter()).status == "found"
     monkeypatch.setattr(milp, "_solve", solve_until("optimal", 50.0))
-    assert solve_mixed(problem, box_of(problem), meter=Effort(1, 4.0).meter()).status == "found"
+    assert solve_mixed(problem, column_box(problem), meter=Effort(1, 4.0).meter()).status == "found"
 
 
 # --- planted faults ----------------------------------------------------------------------------------
@@ -222,11 +222,13 @@ def _fail(self, *arguments, **named):
 
 
 def silence_as_unsat(monkeypatch):
-    monkeypatch.setattr(smt, "answer_in", lambda text: "sat" if "sat" in text.split() else "unsat")
+    monkeypatch.setattr(smt, "parse_satisfiability", lambda text: "sat" if "sat" in text.split() else "unsat")
 
 
 def unknown_as_sat(monkeypatch):
-    monkeypatch.setattr(smt, "answer_in", lambda text: "unsat" if "unsat" in text.split() else "sat")
+    monkeypatch.setattr(
+        smt, "parse_satisfiability", lambda text: "unsat" if "unsat" in text.split() else "sat"
+    )
 
 
 def unknown_as_infeasible(monkeypatch):

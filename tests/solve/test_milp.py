@@ -13,15 +13,15 @@ import pytest
 from hypothesis.errors import NonInteractiveExampleWarning
 
 from encode import cases
-from roadproof.engines.encode.build import NONE, ground
-from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.build import NO_MARGIN, ground_atoms
+from roadproof.engines.encode.motion import ColumnLayout
 from roadproof.engines.encode.problem import (
     All,
     AnyOf,
-    Column,
     Inequality,
     Leaf,
     Problem,
+    RealColumn,
     Row,
     Unknown,
     all_of,
@@ -37,16 +37,16 @@ from roadproof.engines.solve.bounds import (
     Affine,
     Bound,
     TooNonlinearError,
-    approximate,
+    affine_bounds,
     loosened,
+    polynomial_value,
     split_squares,
-    value_of,
 )
 from roadproof.engines.solve.exact import solve_exactly
-from roadproof.engines.solve.milp import box_of, find_solver, solve_mixed
-from roadproof.engines.solve.recall import solve
-from roadproof.engines.solve.smooth import Square, minimise, narrow, near
-from roadproof.engines.solve.smt import Session, ask, parse_sexpression, read_value
+from roadproof.engines.solve.milp import column_box, find_solver, solve_mixed
+from roadproof.engines.solve.recall import find_model
+from roadproof.engines.solve.smooth import Square, linearise_at, minimise, trust_box
+from roadproof.engines.solve.smt import Session, check_sat, parse_sexpression, read_value
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact import judge
@@ -64,13 +64,15 @@ def satisfied(problem, values, tolerance=1e-6):
             row.high is not None and total > row.high + tolerance
         ):
             return False
-    return small.evaluate(problem.circuit, lambda inequality: value_of(inequality, values) >= -tolerance)
+    return small.evaluate(
+        problem.circuit, lambda inequality: polynomial_value(inequality, values) >= -tolerance
+    )
 
 
 def test_affine_problems_have_the_same_answer_as_z3():
     answers = set()
     for problem in small.problems(40):
-        solution = solve_mixed(problem, box_of(problem))
+        solution = solve_mixed(problem, column_box(problem))
         answers.add(solution.status)
         assert solution.status == solve_exactly(problem).status
         if solution.status == "found":
@@ -82,8 +84,8 @@ def test_quadratic_problems_are_answered_on_the_safe_side():
     found, none = 0, 0
     for problem in small.problems(16, quadratic=True, seed=2):
         truth = solve_exactly(problem, Effort(5).meter()).status
-        inner = solve_mixed(problem, box_of(problem), "inner", 3)
-        outer = solve_mixed(problem, box_of(problem), "outer", 3)
+        inner = solve_mixed(problem, column_box(problem), "inner", 3)
+        outer = solve_mixed(problem, column_box(problem), "outer", 3)
         if inner.status == "found":
             found += 1
             assert truth != "infeasible"
@@ -110,15 +112,15 @@ def test_more_pieces_are_nearer():
     box = [(-3.0, 5.0)]
 
     def kept(pieces):
-        made = approximate(inequality, box, "inner", pieces)
+        made = affine_bounds(inequality, box, "inner", pieces)
         return sum(small.approximation_holds(made, p) for p in small.grid_of(box, 161))
 
-    assert kept(1) < kept(8) <= sum(value_of(inequality, p) >= 0 for p in small.grid_of(box, 161))
+    assert kept(1) < kept(8) <= sum(polynomial_value(inequality, p) >= 0 for p in small.grid_of(box, 161))
 
 
 def test_another_solver_gives_the_same_answers():
     for problem in small.problems(5, seed=3):
-        assert solve_mixed(problem, box_of(problem), solver="scipy").status == small.exactly(problem)
+        assert solve_mixed(problem, column_box(problem), solver="scipy").status == small.exactly(problem)
 
 
 def test_solvers_are_silent():
@@ -127,8 +129,8 @@ def test_solvers_are_silent():
     In a process of its own, since what C writes is seen when it ends.
     """
     code = (
-        "from solve import small; from roadproof.engines.solve.milp import box_of, solve_mixed; "
-        "[solve_mixed(p, box_of(p)) for p in small.problems(3, seed=4)]"
+        "from solve import small; from roadproof.engines.solve.milp import column_box, solve_mixed; "
+        "[solve_mixed(p, column_box(p)) for p in small.problems(3, seed=4)]"
     )
     path = os.pathsep.join([str(Path(__file__).parents[1]), os.environ.get("PYTHONPATH", "")])
     run = subprocess.run(
@@ -140,10 +142,10 @@ def test_solvers_are_silent():
 def test_degree_three_is_refused():
     cube = variable(0) * variable(0) * variable(0)
     problem = Problem(
-        (Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),), (), Leaf(Inequality(cube, False))
+        (RealColumn(Unknown("x", "s", 0), Fraction(0), Fraction(1)),), (), Leaf(Inequality(cube, False))
     )
     with pytest.raises(TooNonlinearError):
-        solve_mixed(problem, box_of(problem))
+        solve_mixed(problem, column_box(problem))
     assert solve_exactly(problem).status == "found"
 
 
@@ -156,7 +158,7 @@ def test_unknown_and_missing_solvers_are_told_apart(monkeypatch):
 
 
 def test_nothing_and_everything():
-    column = (Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
+    column = (RealColumn(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
     assert solve_mixed(Problem(column, (), All(())), [(0.0, 1.0)]).status == "found"
     assert solve_mixed(Problem(column, (), AnyOf(())), [(0.0, 1.0)]).status == "infeasible"
     assert solve_exactly(Problem(column, (), AnyOf(()))).status == "infeasible"
@@ -165,7 +167,7 @@ def test_nothing_and_everything():
 
 def test_strictness_is_exact_for_z3():
     x = affine([(0, Fraction(1))], Fraction(-1))
-    column = (Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
+    column = (RealColumn(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
     assert solve_exactly(Problem(column, (), Leaf(Inequality(x, False)))).values == (Fraction(1),)
     assert solve_exactly(Problem(column, (), Leaf(Inequality(x, True)))).status == "infeasible"
 
@@ -175,7 +177,7 @@ def test_strictness_is_exact_for_z3():
 # hold on it have to be satisfiable together, and those of the others must not be, not even one.
 
 GROUPS, EACH = 10, 50
-LAYOUT = Layout(("A", "B"), cases.GRID)
+LAYOUT = ColumnLayout(("A", "B"), cases.GRID)
 CARS = dict.fromkeys(LAYOUT.vehicles, load_vehicle("car"))
 
 
@@ -207,7 +209,7 @@ def problem(trace, circuit):
             for k in range(cases.STEPS + 1):
                 value = getattr(state_at(drive.vehicles[name], k * cases.DT), signal)
                 column = LAYOUT.column(name, signal, k)
-                columns.append((column, Column(Unknown(name, signal, k), Fraction(-200), Fraction(200))))
+                columns.append((column, RealColumn(Unknown(name, signal, k), Fraction(-200), Fraction(200))))
                 rows.append(Row({column: Fraction(1)}, value, value))
     return Problem(tuple(c for _, c in sorted(columns, key=lambda x: x[0])), tuple(rows), circuit)
 
@@ -229,13 +231,13 @@ def test_solvers_judge_and_definition_agree(every_group):
         for formula in formulas:
             expected = cases.holds(formula, trace)
             assert judge(formula, cases.as_drive(trace)).holds == expected
-            circuits[expected].append(ground(unroll(formula, cases.GRID), CARS, LAYOUT, NONE))
+            circuits[expected].append(ground_atoms(unroll(formula, cases.GRID), CARS, LAYOUT, NO_MARGIN))
         every_true = problem(trace, all_of(circuits[True]))
         some_false = problem(trace, any_of(circuits[False]))
         assert solve_exactly(every_true).status == "found"
         assert solve_exactly(some_false).status == "infeasible"
-        assert solve_mixed(every_true, box_of(every_true)).status == "found"
-        assert solve_mixed(some_false, box_of(some_false)).status == "infeasible"
+        assert solve_mixed(every_true, column_box(every_true)).status == "found"
+        assert solve_mixed(some_false, column_box(some_false)).status == "infeasible"
 
 
 # --- Affine forms, squares split off, and conditions on either side of an inequality: small cases by hand
@@ -265,8 +267,8 @@ def test_a_polynomial_is_an_affine_part_and_squares():
     assert linear == Affine(((0, -3.0),), 7.0)
     for point in ([0.0, 0.0], [1.0, 2.0], [-2.0, 3.5]):
         total = linear.value(point) + sum(factor * form.value(point) ** 2 for factor, form in squares)
-        assert total == pytest.approx(value_of(Inequality(polynomial, False), point))
-    assert value_of(Inequality(polynomial, False), [1.0, 2.0]) == 1 + 12 - 3 + 7
+        assert total == pytest.approx(polynomial_value(Inequality(polynomial, False), point))
+    assert polynomial_value(Inequality(polynomial, False), [1.0, 2.0]) == 1 + 12 - 3 + 7
     with pytest.raises(TooNonlinearError):
         split_squares(Inequality(x * x * y, False))
 
@@ -279,7 +281,7 @@ def test_what_the_box_decides(shift: int, strict: bool, inner: str, outer: str):
     """The polynomial is x + 1 + shift on [-1, 3], so from shift to 4 + shift."""
     inequality = Inequality(affine([(0, Fraction(1))], Fraction(1 + shift)), strict, Fraction(1, 8))
     for side, expected in (("inner", inner), ("outer", outer)):
-        made = approximate(inequality, BOX, side)
+        made = affine_bounds(inequality, BOX, side)
         found = (
             "leaf"
             if isinstance(made, Leaf)
@@ -294,7 +296,7 @@ def test_what_the_box_decides(shift: int, strict: bool, inner: str, outer: str):
 
 
 def bounds_of(polynomial, side, pieces):
-    made = approximate(Inequality(polynomial, False), [(-2.0, 4.0)], side, pieces)
+    made = affine_bounds(Inequality(polynomial, False), [(-2.0, 4.0)], side, pieces)
     return made, [node.content for node in nodes(made) if isinstance(node, Leaf)]
 
 
@@ -335,7 +337,7 @@ def test_outer_tangents_are_all_asked_for():
 
 def test_a_square_of_one_value_is_a_number():
     square = variable(0) * variable(0)
-    made = approximate(Inequality(square + constant(Fraction(-9)), False), [(3.0, 3.0)], "inner")
+    made = affine_bounds(Inequality(square + constant(Fraction(-9)), False), [(3.0, 3.0)], "inner")
     assert isinstance(made, All)
     assert made.parts == ()
 
@@ -379,14 +381,14 @@ def test_near_a_point_a_fact_is_approximated_from_inside():
     for _ in range(60):
         inequality = small.inequality(dice, True)
         point = [dice.uniform(-3, 3) for _ in range(small.COLUMNS)]
-        box = narrow([(-4.0, 4.0)] * small.COLUMNS, point, [0.5] * small.COLUMNS)
-        bound = near(inequality, point, box)
+        box = trust_box([(-4.0, 4.0)] * small.COLUMNS, point, [0.5] * small.COLUMNS)
+        bound = linearise_at(inequality, point, box)
         for p in small.grid_of(box, 5):
-            assert bound.affine.value(p) <= value_of(inequality, p) + 1e-9
+            assert bound.affine.value(p) <= polynomial_value(inequality, p) + 1e-9
 
 
 def test_narrow_stays_inside_and_around():
-    assert narrow([(0.0, 10.0), (0.0, 1.0)], [9.5, 1.0000001], [1.0, 5.0]) == [(8.5, 10.0), (0.0, 1.0)]
+    assert trust_box([(0.0, 10.0), (0.0, 1.0)], [9.5, 1.0000001], [1.0, 5.0]) == [(8.5, 10.0), (0.0, 1.0)]
 
 
 def test_a_missing_solver_is_named(monkeypatch):
@@ -425,29 +427,29 @@ def test_a_value_that_is_not_rational_is_left_out() -> None:
     session.tell(told)
     assert session.check() == "sat"
     assert session.values(["x", "p", "(* x x)"]) == [None, True, Fraction(2)]
-    assert solve(f"{told}(check-sat)", ["x", "p"], Effort().meter()) == {"p": True}
+    assert find_model(f"{told}(check-sat)", ["x", "p"], Effort().meter()) == {"p": True}
 
 
 def test_z3_needs_no_other_solver(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cvc5", None)
-    assert ask(SCRIPT) == ask(SCRIPT, "z3") == "sat"
+    assert check_sat(SCRIPT) == check_sat(SCRIPT, "z3") == "sat"
     with pytest.raises(MissingSolverError, match="solver=cvc5 is not installed"):
-        ask(SCRIPT, "cvc5")
+        check_sat(SCRIPT, "cvc5")
 
 
 def test_cvc5_is_asked_where_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Session, "answer", None)
-    assert ask(SCRIPT, "cvc5") == "sat"
+    assert check_sat(SCRIPT, "cvc5") == "sat"
 
 
 @pytest.mark.parametrize("version", ["1.5.4", "1.9.1"])
 def test_cvxpy_that_loses_bounds_is_refused(version: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(milp.modelling(), "__version__", version)
+    monkeypatch.setattr(milp.import_cvxpy(), "__version__", version)
     with pytest.raises(MissingSolverError, match=re.escape(f"cvxpy={version} calls problems infeasible")):
-        milp.modelling()
+        milp.import_cvxpy()
 
 
 @pytest.mark.parametrize("version", ["1.9.2", "1.10.0", "2.0.0rc1"])
 def test_later_versions_of_cvxpy_are_taken(version: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(milp.modelling(), "__version__", version)
-    assert milp.modelling().__version__ == version
+    monkeypatch.setattr(milp.import_cvxpy(), "__version__", version)
+    assert milp.import_cvxpy().__version__ == version

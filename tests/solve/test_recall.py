@@ -107,5 +107,5 @@ def test_what_is_kept_is_bounded(monkeypatch):
     monkeypatch.setattr(recall, "_MOST_CHARACTERS", 10)
     replies = Replies()
     for k in range(5):
-        replies.keep(bytes([k]), "sat" * 2)
+        replies.store(bytes([k]), "sat" * 2)
     assert [replies.find(bytes([k])) for k in range(5)] == [None, None, None, None, "satsat"]

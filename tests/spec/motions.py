@@ -3,10 +3,10 @@
 from fractions import Fraction
 from random import Random
 
+from roadproof.library.assumption import Axiom
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.motion import Axiom
 from roadproof.logic.formula import Formula
 from roadproof.semantics.exact import judge
 from roadproof.world.drive import Drive, Motion, Piece

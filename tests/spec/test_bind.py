@@ -6,34 +6,24 @@ from fractions import Fraction as F
 import pytest
 
 from roadproof.errors import InputError, TextError, UsageError
+from roadproof.extensions.surveys.composition import in_some_lane, split_conjunction, with_lane, with_vehicles
 from roadproof.library import compose
 from roadproof.library.bind import bind, default_values, occupies
-from roadproof.library.compose import (
-    always,
-    both,
-    conjuncts,
-    either,
-    equivalence,
-    eventually,
-    implication,
-    in_some_lane,
-    negation,
-    with_lane,
-    with_vehicles,
-)
+from roadproof.library.compose import always, both, either, equivalence, eventually, implication, negation
 from roadproof.library.elaborate import apply_definition, read_claim
 from roadproof.library.loading import bundled_library, load_library
 from roadproof.library.specification import Query, Source
-from roadproof.library.uses import used_in
+from roadproof.library.uses import parts_of_claim
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.custom_names import told_freedom
+from roadproof.logic.custom_names import freedom_lines
 from roadproof.logic.formula import Formula
+from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import parameters_of, vehicles_of, with_values, without_names
-from roadproof.logic.show import as_syntax, text
+from roadproof.logic.show import text
 from roadproof.semantics.exact import judge
 from roadproof.world.drive import Drive, Motion, Piece
-from roadproof.world.road import Lanelet, Road, pairs
+from roadproof.world.road import Lanelet, Road, adjacency
 from roadproof.world.signals import KINDS
 from tables import read_table
 
@@ -58,9 +48,9 @@ MERGE = Road(
         lanelet("m2", "main-2", 2),
         lanelet("r", "ramp", 0, 100, 300, zone="merge", attribute="merge"),
     ),
-    pairs([("main-1", "main-2"), ("ramp", "main-1")]),
+    adjacency([("main-1", "main-2"), ("ramp", "main-1")]),
 )
-FAR = Road("far", (lanelet("a", "A", 0), lanelet("b", "B", 5)), pairs([]))
+FAR = Road("far", (lanelet("a", "A", 0), lanelet("b", "B", 5)), adjacency([]))
 
 
 def bound(text: str, road: Road = MERGE, **lanes: str) -> Formula:
@@ -167,11 +157,11 @@ def test_uses_come_once_and_in_reading_order() -> None:
     assert claim.vehicles
     from roadproof.logic.parse import parse_claim
 
-    used = used_in(BASE, parse_claim("decel(POV, SV, L) and G[0, minDanger] laneKeep(POV, L)"))
+    used = parts_of_claim(BASE, parse_claim("decel(POV, SV, L) and G[0, minDanger] laneKeep(POV, L)"))
     assert [d.name for d in used.definitions] == ["decel", "fasterThan", "laneKeep", "atLane"]
     assert [p.name for p in used.parameters] == ["minDanger"]
     other = parse_claim("decel@ext(POV, SV, L) and danger@ext(SV, POV)")
-    names = [d.name for d in used_in(BASE, other).definitions]
+    names = [d.name for d in parts_of_claim(BASE, other).definitions]
     assert {"decel@ext", "fasterThan", "decelerates", "danger"} <= {*names}
     assert len({*names}) == len(names)
 
@@ -247,30 +237,30 @@ def test_names_that_would_mean_two_things_are_refused() -> None:
 )
 def test_definitions_are_taken_from_another_set(text: str) -> None:
     query = read(text)
-    taken = compose.taken_from(BASE, query, "ext")
+    taken = compose.in_spec_set(BASE, query, "ext")
     name, rest = text.split("(")
     assert taken.text == f"{name}@ext({rest}"
     assert taken.formula == read(taken.text).formula
-    assert compose.taken_from(BASE, query, "base") == query
+    assert compose.in_spec_set(BASE, query, "base") == query
 
 
 def test_parts_of_a_formula_are_said_by_name() -> None:
     query = read("aheadOf(SV, POV) and F danger(SV, POV) and atLane(POV1, L)")
     assert isinstance(query.formula, f.And)
     first, second, third = query.formula.parts
-    two = compose.of_parts(query, [first, second])
+    two = compose.conjunction_of(query, [first, second])
     assert (two.text, two.vehicles, two.lanes) == (
         "aheadOf(SV, POV) and F danger(SV, POV)",
         ("POV", "SV"),
         (),
     )
     assert read(two.text).formula == two.formula
-    assert compose.of_parts(query, [third]).lanes == ("L",)
-    assert compose.of_parts(query, []).text == "true"
+    assert compose.conjunction_of(query, [third]).lanes == ("L",)
+    assert compose.conjunction_of(query, []).text == "true"
 
 
 def test_conjuncts_are_what_is_joined() -> None:
-    parts = conjuncts(FOUR)
+    parts = split_conjunction(FOUR)
     assert [part.text for part in parts] == [
         "given x: m/s: scenario_4(SV, POV, L)",
         "given x: m/s: v_lon(SV) > x",
@@ -278,10 +268,10 @@ def test_conjuncts_are_what_is_joined() -> None:
     assert [(part.vehicles, part.lanes) for part in parts] == [(("POV", "SV"), ("L",)), (("SV",), ())]
     assert both(*parts).formula == FOUR.formula
     assert read(both(ONE, *parts).text).formula == f.conjunction(ONE.formula, *FOUR.formula.parts)  # type: ignore[union-attr]
-    assert conjuncts(PLAIN) == (PLAIN,)
+    assert split_conjunction(PLAIN) == (PLAIN,)
 
 
-# --- Own signals and kinds of vehicles in the language: what is read, what is refused, what is printed
+# --- Custom signals and kinds of vehicles in the language: what is read, what is refused, what is printed
 
 OWN = """
 signal jerk(a: vehicle): m/s^3 in [-10, 10 m/s^3] "how fast its acceleration changes"
@@ -317,13 +307,13 @@ def test_all_that_compares_kinds_reads_back(kind: str, op: str) -> None:
 
 def test_bounds_are_in_si_and_said() -> None:
     formula = read_claim(home(), "speed(SV) > 1 m/s and jerk(SV) > 0 and red and gap(SV) < 1 m").formula
-    assert told_freedom(formula) == (
+    assert freedom_lines(formula) == (
         "gap is any function of time within [0, inf] m",
         "jerk is any function of time within [-10, 10] m/s^3",
         "red is unconstrained: any function of time",
         "speed is any function of time within [0, 10] m/s",
     )
-    assert told_freedom(read_claim(home("signal x: bool derived by true"), "x").formula) == ()
+    assert freedom_lines(read_claim(home("signal x: bool derived by true"), "x").formula) == ()
 
 
 def test_roles_are_exchanged_in_own_signals_and_never_in_kinds() -> None:
@@ -335,7 +325,7 @@ def test_roles_are_exchanged_in_own_signals_and_never_in_kinds() -> None:
 
 def test_a_derived_signal_is_shown_with_what_it_is_derived_by() -> None:
     query = read_claim(home(), "F braking and ahead(SV) > 0")
-    assert [x.name for x in used_in(home(), query.claim).definitions] == ["braking", "ahead"]
+    assert [x.name for x in parts_of_claim(home(), query.claim).definitions] == ["braking", "ahead"]
 
 
 def test_the_fingerprint_changes_with_signals_only() -> None:

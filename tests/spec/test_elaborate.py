@@ -18,7 +18,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import FOREVER, Formula
 from roadproof.logic.parse import parse_library
 from roadproof.logic.recover import parse_pieces
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.package_data import shipped_folder
 from tables import read_table
 
 BASE = bundled_library().select()
@@ -348,7 +348,7 @@ def test_all_mistakes_of_a_formula():
 
 
 def test_the_library_has_no_mistake_and_reads_alike_in_pieces():
-    folder = shipped("models").parent / "src/roadproof/library/sets"
+    folder = shipped_folder("models").parent / "src/roadproof/library/sets"
     files = sorted(folder.glob("*.spec"))
     assert files
     for file in files:

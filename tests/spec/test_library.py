@@ -9,7 +9,7 @@ from pkgutil import iter_modules
 import pytest
 
 from roadproof.errors import InputError, TextError
-from roadproof.evidence.specifications import read_beside
+from roadproof.evidence.specifications import load_specs_beside
 from roadproof.evidence.strict import Fields
 from roadproof.frontends import cli
 from roadproof.frontends.cli.main import main
@@ -20,11 +20,11 @@ from roadproof.library.specification import (
     Library,
     Source,
     Specification,
-    is_within,
     read_specification,
-    unknown,
+    satisfies_bound,
+    unknown_name,
 )
-from roadproof.library.words import Words, called, called_in, legend, spans, words_of
+from roadproof.library.words import Words, legend, spans, words_by_number, words_in_sets, words_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from tables import read_table
@@ -153,9 +153,9 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
 
 
 def test_unknown_names_the_nearest() -> None:
-    assert unknown("set", "bas", ["base", "ext"]) == "there is no set 'bas'; did you mean 'base'?"
-    assert unknown("set", "x", ["base", "ext"]) == "there is no set 'x'; there are base, ext"
-    assert unknown("set", "x", []) == "there is no set 'x'"
+    assert unknown_name("set", "bas", ["base", "ext"]) == "there is no set 'bas'; did you mean 'base'?"
+    assert unknown_name("set", "x", ["base", "ext"]) == "there is no set 'x'; there are base, ext"
+    assert unknown_name("set", "x", []) == "there is no set 'x'"
 
 
 @pytest.mark.parametrize(
@@ -170,7 +170,7 @@ def test_unknown_names_the_nearest() -> None:
     ],
 )
 def test_a_declared_value_is_within_its_bound(bound: str, value: str, kept: bool) -> None:
-    assert is_within(bound, Fraction(value)) is kept
+    assert satisfies_bound(bound, Fraction(value)) is kept
     text = f'# mine\nparam rho = {value} s{f" where rho {bound} 0" if bound else ""} "mine"'
     if kept:
         assert library(text).parameters["rho"].value == Fraction(value)
@@ -199,7 +199,7 @@ def own(text: str, set_name: str = "base") -> Specification:
 
 
 def test_the_24_are_called_by_behaviour_of_pov_and_sv_and_by_sector() -> None:
-    words = called(BASE)
+    words = words_by_number(BASE)
     assert list(words) == list(range(1, 25))
     kinds = ("cut-in", "cut-out", "acceleration behind", "deceleration ahead")
     rows = [(pov, "lane keep") for pov in kinds]
@@ -237,11 +237,11 @@ def test_titles_agree_with_what_the_behaviours_say(number: int) -> None:
 
 @pytest.mark.parametrize("set_name", ["extA", "ext", "complete"])
 def test_wider_sets_have_the_same_names(set_name: str) -> None:
-    assert called(bundled_library().select(set_name)) == called(BASE)
+    assert words_by_number(bundled_library().select(set_name)) == words_by_number(BASE)
 
 
 def test_a_scenario_without_a_title_is_called_by_its_description() -> None:
-    words = called(own(OWN), (30, 31, 32, 33))
+    words = words_by_number(own(OWN), (30, 31, 32, 33))
     assert words[30] == Words(30, "a bus cuts in", "bus lane", "", "", "Bus lane: a bus cuts in.")
     assert words[31] == Words(31)
     assert str(words[31]) == "scenario 31"
@@ -272,7 +272,7 @@ STOPS = 'def behaviourPOV_4(POV, SV: vehicle, L: lane) "POV stops" := decel(POV,
 )
 def test_another_behaviour_loses_the_title(text: str) -> None:
     """Old words on a new scenario would say what is not so."""
-    words = called(own(text, "mine"))
+    words = words_by_number(own(text, "mine"))
     assert words[4].title == "SV keeps its lane, POV stops"
     assert words[4].sentence == "Main road: SV keeps its lane, POV stops."
     assert words[12].title == words[20].title == words[4].title  # which take it over
@@ -281,8 +281,8 @@ def test_another_behaviour_loses_the_title(text: str) -> None:
 
 def test_sets_that_do_not_call_it_alike_leave_it_without_words() -> None:
     specification = own(f"set mine extends base {{ {STOPS} }}")
-    assert called_in(specification, ("base", "ext"), (4, 3)) == called(specification, (3, 4))
-    words = called_in(specification, ("base", "mine"), (4, 3))
+    assert words_in_sets(specification, ("base", "ext"), (4, 3)) == words_by_number(specification, (3, 4))
+    words = words_in_sets(specification, ("base", "mine"), (4, 3))
     assert (words[3].title, words[4]) == ("acceleration behind, lane keep", Words(4))
 
 
@@ -299,7 +299,7 @@ def test_a_title_is_given_once() -> None:
 def test_files_beside_evidence_rename_nothing(tmp_path: Path) -> None:
     def beside(text: str) -> Library:
         (tmp_path / "mine.spec").write_text(text)
-        return read_beside(Fields({"specs": ["mine.spec"]}, "index"), tmp_path, ())[0]
+        return load_specs_beside(Fields({"specs": ["mine.spec"]}, "index"), tmp_path, ())[0]
 
     assert 30 in beside(OWN + 'title of 30 "bus"').titles
     with pytest.raises(Exception, match="changes '4' of the library"):
@@ -316,7 +316,7 @@ def test_titles_say_which_lane_change_the_formula_asks_for(number: int) -> None:
 
 
 def test_legends_are_in_order() -> None:
-    told = [*legend(called(BASE, {12, 8, 1, 4}))]
+    told = [*legend(words_by_number(BASE, {12, 8, 1, 4}))]
     assert told == [
         "1:     cut-in, lane keep",
         "4, 12: deceleration ahead, lane keep",

@@ -9,18 +9,9 @@ import pytest
 
 from roadproof.engines.prove.prover import prove
 from roadproof.errors import InputError
+from roadproof.library.assumption import ALL_SCHEMAS, SCHEMAS, Assumption, Axiom, claim_statement
 from roadproof.library.elaborate import read_claim
-from roadproof.library.motion import (
-    ALL_SCHEMAS,
-    SCHEMAS,
-    Assumption,
-    Axiom,
-    assumption,
-    axiom_formula,
-    split,
-    statement,
-    under,
-)
+from roadproof.library.motion import assumption, axiom_formula, split_claim, with_assumptions
 from roadproof.logic import formula as f
 from roadproof.logic import motion, show
 from roadproof.logic import terms as t
@@ -213,13 +204,13 @@ def test_facts_about_motion_are_used_only_where_the_claim_says_so():
 
 
 def test_what_is_assumed_is_read_as_it_is_written():
-    said, claim = split("assuming motion,\n a_lon(SV) <= 3.0 m/s^2: given v: m/s: v_lon(SV) <= v")
+    said, claim = split_claim("assuming motion,\n a_lon(SV) <= 3.0 m/s^2: given v: m/s: v_lon(SV) <= v")
     assert claim.strip() == "given v: m/s: v_lon(SV) <= v"
     assert claim.splitlines()[1].index("given") == len(" a_lon(SV) <= 3.0 m/s^2: ")
-    found = under(specification, read_claim(specification, claim), said)
-    assert found.said == ("motion", "a_lon(SV) <= 3 m/s^2")
-    assert split(statement(found.said, claim.strip()))[0] == found.said
-    assert split("danger(SV,POV)") == ((), "danger(SV,POV)")
+    found = with_assumptions(specification, read_claim(specification, claim), said)
+    assert found.texts == ("motion", "a_lon(SV) <= 3 m/s^2")
+    assert split_claim(claim_statement(found.texts, claim.strip()))[0] == found.texts
+    assert split_claim("danger(SV,POV)") == ((), "danger(SV,POV)")
 
 
 # --- the page ------------------------------------------------------------------------------------

@@ -2,10 +2,11 @@
 
 import pytest
 
-from roadproof.library.elaborate import entered_below, read_claim
+from roadproof.extensions.pages.places import places_of
+from roadproof.library.elaborate import definitions_below, read_claim
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Source, Specification
-from roadproof.library.uses import Used, places_of, used_in
+from roadproof.library.uses import PartsOfClaim, parts_of_claim
 from roadproof.logic.parse import parse_claim
 
 SPEC = """
@@ -28,8 +29,8 @@ def home(*options: str) -> Specification:
     return load_library([Source("mine.spec", SPEC)]).select(*options)
 
 
-def used(text: str, specification: Specification | None = None) -> Used:
-    return used_in(specification or home(), parse_claim(text))
+def used(text: str, specification: Specification | None = None) -> PartsOfClaim:
+    return parts_of_claim(specification or home(), parse_claim(text))
 
 
 @pytest.mark.parametrize(
@@ -71,9 +72,9 @@ def test_parameters_are_those_of_the_elaborated_claim(text: str, names: list[str
 
 
 def test_a_definition_is_entered_with_all_below_it() -> None:
-    assert [name for _, name in entered_below(home(), "foo")] == ["foo", "bar", "leaf"]
-    assert [name for _, name in entered_below(home(), "rate")] == ["rate"]
-    assert [*entered_below(home("mine"), "foo")] == [("mine", "foo"), ("mine", "bar")]
+    assert [name for _, name in definitions_below(home(), "foo")] == ["foo", "bar", "leaf"]
+    assert [name for _, name in definitions_below(home(), "rate")] == ["rate"]
+    assert [*definitions_below(home("mine"), "foo")] == [("mine", "foo"), ("mine", "bar")]
 
 
 def test_places_are_in_definitions_that_are_entered() -> None:

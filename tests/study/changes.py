@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from study.asking import Change
 from study.commands import EVERY
 from study.read_files import other_files
+from study.stored_question import Change
 
 TEXTS: Mapping[str, tuple[str, str]] = {
     "leaf, which two sets share": ("v_lon(a) > 8 m/s", "v_lon(a) > 0 m/s"),
@@ -108,8 +108,10 @@ TOGETHER: Mapping[tuple[str, str], Mapping[str, Any]] = {
 _WHOM = "whom a run tells how far it is"
 UNCHANGED: Mapping[str, str] = {
     **dict.fromkeys(("progress", "say", "tell"), _WHOM),
-    "timeout": "the clock ends a search; what it cuts off is in doubt, and no doubt is kept",
+    "timeout": "the clock ends a search; what it cuts off is in doubt, and such a doubt is not kept",
     "kernel": "a kernel is asked about the evidence that an answer has, wherever that is from",
+    "explain": "it explains an answer that is there; tested in tests/extensions/encoding",
+    "solution": "it is the answer; nothing is asked, and nothing goes into the cache",
     "strict": "swept where recordings are the question",
     "road": "swept with maps, in tests/extensions/traffic",
 }

@@ -15,13 +15,13 @@ from roadproof.extensions.catalogue import settings as catalogues
 from roadproof.extensions.drivers import settings as drivers
 from roadproof.extensions.surveys import settings as surveys
 from roadproof.extensions.traffic import settings as recordings
-from roadproof.frontends.api.questioned import QuestionAnswers
-from roadproof.frontends.settings import questions, studies
+from roadproof.frontends.api.question_answers import QuestionAnswers
+from roadproof.frontends.settings import questions, relations
 from roadproof.frontends.settings.option import Settings
-from study.asking import Asking
+from study.stored_question import StoredQuestion
 
 Answers = QuestionAnswers[Any]
-Ask = Callable[[Asking, bool], Any]
+Ask = Callable[[StoredQuestion, bool], Any]
 
 CLAIMS = (
     "both(SV) -> v_lon(SV) > 7 m/s",
@@ -31,48 +31,48 @@ CLAIMS = (
 )
 
 
-def prove(asking: Asking, fresh: bool) -> Answers:
+def prove(asking: StoredQuestion, fresh: bool) -> Answers:
     return rp.prove(*CLAIMS, using=asking.using, jobs=1, fresh=fresh, **asking.more)
 
 
-def witness(asking: Asking, fresh: bool) -> Answers:
+def witness(asking: StoredQuestion, fresh: bool) -> Answers:
     what = "both(SV) and near(SV) and paced(SV) and v_lon(SV) > low"
     return rp.witness(what, using=asking.using, jobs=1, fresh=fresh, **asking.more)
 
 
-def witness_scenarios(asking: Asking, fresh: bool) -> Answers:
+def witness_scenarios(asking: StoredQuestion, fresh: bool) -> Answers:
     return rp.witness(90, 91, using=asking.using, jobs=1, fresh=fresh, **asking.more)
 
 
-def overlap(asking: Asking, fresh: bool) -> Answers:
+def overlap(asking: StoredQuestion, fresh: bool) -> Answers:
     more = {"among": "90,91", **asking.more}
     return rp.overlap(more.pop("among"), asking.using, jobs=1, fresh=fresh, **more)
 
 
-def order(asking: Asking, fresh: bool) -> Answers:
+def order(asking: StoredQuestion, fresh: bool) -> Answers:
     return rp.order("90,91", asking.using, jobs=1, fresh=fresh, **asking.more)
 
 
-def redundancy(asking: Asking, fresh: bool) -> Answers:
+def redundancy(asking: StoredQuestion, fresh: bool) -> Answers:
     more = {"effort": 1, **asking.more}
     return rp.redundancy("90,91", asking.using, jobs=1, fresh=fresh, **more)
 
 
-def classify(asking: Asking, fresh: bool) -> Answers:
+def classify(asking: StoredQuestion, fresh: bool) -> Answers:
     more = {"among": "90,91", "shares": False, **asking.more}
     if "on" in more:
         more["on"] = asking.place(more["on"])
     return rp.classify(more.pop("among"), asking.using, jobs=1, fresh=fresh, **more)
 
 
-def coverage(asking: Asking, fresh: bool) -> Answers:
+def coverage(asking: StoredQuestion, fresh: bool) -> Answers:
     more = {"effort": 0.1, **asking.more}
     if "on" in more:
         more["on"] = asking.place(more["on"])
     return rp.coverage(asking.using, jobs=1, fresh=fresh, **more)
 
 
-def explore(asking: Asking, fresh: bool) -> Answers:
+def explore(asking: StoredQuestion, fresh: bool) -> Answers:
     more = {
         "vary": {"low": (15, 25)},
         "steps": 2,
@@ -84,24 +84,24 @@ def explore(asking: Asking, fresh: bool) -> Answers:
     return rp.explore(what, using=asking.using, jobs=1, fresh=fresh, **more)
 
 
-def preventable(asking: Asking, fresh: bool) -> Answers:
+def preventable(asking: StoredQuestion, fresh: bool) -> Answers:
     given = replace(asking, specs=("driver",))
     more = {"at": {"Vy": "1 m/s", "Ve0": "100 km/h"}, "lines": 2, "lemmas": False, **asking.more}
     return rp.preventable("cut-in", ["careful"], given.using, jobs=1, fresh=fresh, **more)
 
 
-def prevented(asking: Asking, fresh: bool) -> Answers:
+def prevented(asking: StoredQuestion, fresh: bool) -> Answers:
     given = replace(asking, specs=("driver",))
     more = {"preventable": "careful", "horizon": 3, **asking.more}
     return rp.witness(4, using=given.using, jobs=1, fresh=fresh, **more)
 
 
-def catalogue(asking: Asking, fresh: bool) -> Answers:
+def catalogue(asking: StoredQuestion, fresh: bool) -> Answers:
     more = {"among": "4,90,91", "classes": False, "drivers": ("careful",), **asking.more}
     return rp.catalogue(asking.place("tests"), using=asking.using, jobs=1, fresh=fresh, **more)
 
 
-def evaluate(asking: Asking, fresh: bool) -> Any:
+def evaluate(asking: StoredQuestion, fresh: bool) -> Any:
     """With a folder of results that earlier runs have written, or with one of its own."""
     traffic, results = asking.place("recordings"), Path(os.environ["XDG_CACHE_HOME"]) / "results"
     more = {"among": "1,4,90", "pictures": False, **asking.more}
@@ -111,7 +111,7 @@ def evaluate(asking: Asking, fresh: bool) -> Any:
         return {"answer": found.as_data(), "findings": repr(found.findings)}
 
 
-def compare(asking: Asking, fresh: bool) -> Any:
+def compare(asking: StoredQuestion, fresh: bool) -> Any:
     """Nothing is kept of it; what this process and its cache remember of definitions is forgotten first."""
     more = {"effort": 20, **asking.more}
     if fresh:
@@ -128,15 +128,15 @@ EVERY: Mapping[str, tuple[Ask, type[Settings]]] = {
     "witness": (witness, questions.Witness),
     "witness_scenarios": (witness_scenarios, questions.Witness),
     "prevented": (prevented, questions.Witness),
-    "overlap": (overlap, studies.Overlap),
+    "overlap": (overlap, relations.Overlap),
     "explore": (explore, surveys.Explore),
     "preventable": (preventable, drivers.Preventable),
-    "order": (order, studies.Order),
+    "order": (order, relations.Order),
     "redundancy": (redundancy, surveys.Redundancy),
     "classify": (classify, surveys.Classify),
     "coverage": (coverage, surveys.Coverage),
     "catalogue": (catalogue, catalogues.Catalogue),
     "evaluate": (evaluate, recordings.Evaluate),
-    "compare": (compare, questions.Compare),
+    "compare": (compare, questions.CompareSettings),
 }
 """Each question with the settings of its command."""

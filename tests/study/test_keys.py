@@ -11,17 +11,17 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from api.doors import without_seconds
+from api.both_interfaces import without_seconds
 from roadproof.errors import RoadproofError
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library
 from roadproof.logic.rewrite import parameters_of
-from roadproof.questions.question import walk
-from roadproof.questions.settle import look_up
+from roadproof.questions.decide import look_up
+from roadproof.questions.question import walk_batch
 from roadproof.runtime.archives import SWITCH
-from study.asking import Asking
 from study.changes import DRIVER, PAIRS, UNCHANGED, changes_of, unchanged_options
 from study.commands import EVERY
+from study.stored_question import StoredQuestion
 
 LEAF, NEAR = "text: leaf, which two sets share", "text: near, whose variable is called as a parameter"
 SHORT: dict[str, tuple[str, ...]] = {
@@ -66,7 +66,7 @@ class Asked(Exception):
     """Nothing more is to be computed."""
 
 
-def answer(name: str, asking: Asking, fresh: bool) -> Any:
+def answer(name: str, asking: StoredQuestion, fresh: bool) -> Any:
     """An answer as data, or why there is none."""
     try:
         return told(EVERY[name][0](asking, fresh))
@@ -121,9 +121,9 @@ def differences(one: Any, other: Any, place: str = "") -> list[str]:
 
 def check(name: str, change: str, first: dict[str, Any]) -> None:
     if name not in first:
-        first[name] = answer(name, Asking(), False)
+        first[name] = answer(name, StoredQuestion(), False)
         assert "error" not in first[name]
-    changed = changes_of(name)[change](Asking())
+    changed = changes_of(name)[change](StoredQuestion())
     known_now, computed = answer(name, changed, False), answer(name, changed, True)
     assert differences(known_now, computed) == []
 
@@ -152,8 +152,8 @@ def test_the_question_asked_at_first_is_known_and_its_answer_the_same(
     name: str, first: dict[str, Any]
 ) -> None:
     if name not in first:
-        first[name] = answer(name, Asking(), False)
-    again = EVERY[name][0](Asking(), False)
+        first[name] = answer(name, StoredQuestion(), False)
+    again = EVERY[name][0](StoredQuestion(), False)
     assert told(again) == first[name]
     assert isinstance(again, dict) or is_recalled(again)
 
@@ -172,24 +172,26 @@ def test_another_version_has_no_answer_to_any_question(name: str) -> None:
         raise Asked
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("roadproof.frontends.api.questioned.settle", ask)
-        patch.setattr("roadproof.extensions.surveys.classify.division.settle", ask)
+        patch.setattr("roadproof.frontends.api.question_answers.decide_claims", ask)
+        patch.setattr("roadproof.extensions.surveys.classify.division.decide_claims", ask)
         with pytest.raises(Asked):
-            EVERY[name][0](Asking(), False)
+            EVERY[name][0](StoredQuestion(), False)
         patch.setattr("roadproof.questions.store.ANSWERS", "9.9.9")
         assert look_up(studies[0]) == {}
 
 
 def test_another_version_of_the_program_evaluates_again(monkeypatch: pytest.MonkeyPatch) -> None:
     lines: list[str] = []
-    tell = Asking().with_more(tell=lines.append)
+    tell = StoredQuestion().with_more(tell=lines.append)
     evaluate = EVERY["evaluate"][0]
     evaluate(tell, False)
     lines.clear()
     evaluate(tell, False)
     assert any("already evaluated" in x for x in lines)
     lines.clear()
-    monkeypatch.setattr("roadproof.extensions.traffic.evaluate.results.program", lambda: "another program")
+    monkeypatch.setattr(
+        "roadproof.extensions.traffic.evaluate.results.program_digest", lambda: "another program"
+    )
     evaluate(tell, False)
     assert not any("already evaluated" in x for x in lines)
 
@@ -197,8 +199,8 @@ def test_another_version_of_the_program_evaluates_again(monkeypatch: pytest.Monk
 @pytest.mark.parametrize(("name", "change"), [("prove", "text: a spare value"), ("overlap", "param spare")])
 def test_a_change_that_no_claim_sees_leaves_answers_known(name: str, change: str) -> None:
     ask = EVERY[name][0]
-    ask(Asking(), False)
-    changed = changes_of(name)[change](Asking())
+    ask(StoredQuestion(), False)
+    changed = changes_of(name)[change](StoredQuestion())
     recalled, computed = ask(changed, False), ask(changed, True)
     assert told(recalled) == told(computed)
     assert is_recalled(recalled)
@@ -207,9 +209,9 @@ def test_a_change_that_no_claim_sees_leaves_answers_known(name: str, change: str
 @pytest.mark.parametrize("name", ["catalogue", "witness_scenarios"])
 def test_a_value_that_was_declared_and_is_given_now_is_in_every_drive(name: str) -> None:
     """A drive that was found for one means the same for the other."""
-    declared = changes_of(name)["text: a value that is declared"](Asking())
+    declared = changes_of(name)["text: a value that is declared"](StoredQuestion())
     answer(name, declared, False)
-    given = changes_of(name)["param gap"](Asking())
+    given = changes_of(name)["param gap"](StoredQuestion())
     assert differences(answer(name, given, False), answer(name, given, True)) == []
 
 
@@ -223,13 +225,13 @@ def test_no_shipped_plate_answers_for_another_driver(name: str) -> None:
         raise Asked
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("roadproof.frontends.api.questioned.settle", ask)
+        patch.setattr("roadproof.frontends.api.question_answers.decide_claims", ask)
         for home in (using, None):
             with pytest.raises(Asked):
                 rp.preventable("cut-in", ["careful"], home, lemmas=False, jobs=1)
     other, declared = asked
     assert {*look_up(declared)} >= {*declared.plates}
-    walked = [x for batch in other.batches({}) for x in walk(batch, lambda *_: None)]
+    walked = [x for batch in other.batches({}) for x in walk_batch(batch, lambda *_: None)]
     uses = {x.name for _, claim in walked for x in claim.parameters}
     assert bool(look_up(other)) == (name not in uses), "a plate is known where its lines do not use the value"
     assert name in uses or name in ("cc_drift", "r157_delay", "a_max")

@@ -10,22 +10,24 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from api.doors import MINE
+from api.both_interfaces import MINE
 from roadproof.errors import InputError
-from roadproof.evidence import answer
-from roadproof.evidence.answer import Refutation, answer_data
+from roadproof.evidence.answer import RefutingTrace
+from roadproof.evidence.answer_codec import answer_data
 from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Ruling, judge_file
-from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.evidence.readers import refutation
+from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.cli.main import main
 from roadproof.library.specification import Library
 from roadproof.questions.store import Store
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.runtime import archives
 from roadproof.runtime.archives import SWITCH
 from roadproof.verdict import Verdict
 from shipping.__main__ import FOLDER
+from shipping.archive import ship
 from shipping.questions import QUESTIONS
 
 RULE = """
@@ -42,10 +44,10 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A cache of our own, and nothing that is shipped."""
     monkeypatch.setenv(SWITCH, "on")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr(archives, "shipped", lambda _: tmp_path / "shipped")
-    archives.archived.cache_clear()
+    monkeypatch.setattr(archives, "shipped_folder", lambda _: tmp_path / "shipped")
+    archives.shipped_answers.cache_clear()
     yield tmp_path / "cache/roadproof/answers"
-    archives.archived.cache_clear()
+    archives.shipped_answers.cache_clear()
 
 
 def origins(found: Answers) -> tuple[str, ...]:
@@ -171,7 +173,9 @@ def test_a_known_drive_that_is_refused_is_computed_again(monkeypatch: pytest.Mon
     def reject(file: DriveFile, library: Library) -> Ruling:
         judged.append(file)
         return (
-            Ruling(None, Why.TOLD("it is rejected here")) if len(judged) == 1 else judge_file(file, library)
+            Ruling(None, ReasonKind.TOLD("it is rejected here"))
+            if len(judged) == 1
+            else judge_file(file, library)
         )
 
     with monkeypatch.context() as patch:
@@ -189,17 +193,11 @@ def test_a_shipped_trace_that_is_refused_is_computed_again(
     for known_here in ((), ("cache",)):
         found = rp.prove(*claims, using=using, jobs=1, drive=False)
         assert origins(found) == known_here
-    archives.ship(tmp_path / "shipped/known", "prove", contents(found))
-    monkeypatch.setattr("roadproof.evidence.answer.fault_of", lambda *_: "rejected")
+    ship(tmp_path / "shipped/known", "prove", contents(found))
+    monkeypatch.setattr("roadproof.evidence.readers.refutation.fault_of", lambda *_: "rejected")
     again = rp.prove(*claims, using=using, jobs=1, drive=False)
     assert origins(again) == ()
     assert again.verdict is Verdict.REFUTED
-
-
-def test_what_is_in_doubt_is_not_kept(home: Path) -> None:
-    told = rp.witness("v_lon(SV) > 300 m/s", jobs=1)
-    assert told.verdict in (Verdict.NONE_WITHIN, Verdict.UNKNOWN)
-    assert not [*home.iterdir()] if home.exists() else True
 
 
 def test_the_cache_is_shown_and_removed(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -220,12 +218,12 @@ def test_the_cache_has_bounds(home: Path, monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_shipped_answers_count_and_changed_ones_do_not(tmp_path: Path) -> None:
     found = pair()
-    path = archives.ship(tmp_path / "shipped/known", "overlap", contents(found))
+    path = ship(tmp_path / "shipped/known", "overlap", contents(found))
     assert origins(pair(using=rp.load(specs=[RULE]))) == ("shipped",)
     assert rp.check(pair(out=tmp_path / "out").folder).exit_code == 0
     text = lzma.decompress(path.read_bytes()).decode()
     path.write_bytes(lzma.compress(text.replace("roadproof/", "roadproof-").encode()))
-    archives.archived.cache_clear()
+    archives.shipped_answers.cache_clear()
     assert origins(pair()) == ("cache",)
 
 
@@ -234,9 +232,9 @@ def test_shipped_answers_count_and_changed_ones_do_not(tmp_path: Path) -> None:
 )
 def test_a_damaged_archive_is_as_none(damage: bytes | None, tmp_path: Path) -> None:
     found = pair()
-    path = archives.ship(tmp_path / "shipped/known", "overlap", contents(found))
+    path = ship(tmp_path / "shipped/known", "overlap", contents(found))
     path.write_bytes(path.read_bytes()[:-40] if damage is None else damage)
-    archives.archived.cache_clear()
+    archives.shipped_answers.cache_clear()
     assert origins(pair()) == ("cache",)
     assert pair(fresh=True).verdicts == found.verdicts
 
@@ -246,7 +244,7 @@ def test_an_answer_that_this_program_cannot_read_is_computed_again(tmp_path: Pat
     shutil.rmtree(tmp_path / "cache")
     [(key, content)] = contents(found).items()
     later = json.dumps({**json.loads(content), "later": 1})
-    archives.ship(tmp_path / "shipped/known", "overlap", {key: later})
+    ship(tmp_path / "shipped/known", "overlap", {key: later})
     assert origins(pair()) == ()
 
 
@@ -255,7 +253,7 @@ def test_an_answer_under_the_key_of_another_does_not_count(home: Path, tmp_path:
     shutil.rmtree(home)
     [key] = contents(one)
     [content] = contents(other).values()
-    archives.ship(tmp_path / "shipped/known", "overlap", {key: content})
+    ship(tmp_path / "shipped/known", "overlap", {key: content})
     assert origins(pair()) == ()
 
 
@@ -264,7 +262,7 @@ def test_a_known_trace_is_judged_once_by_each_program(
 ) -> None:
     """What an earlier run kept it has judged; what is shipped is judged when it is met first."""
     judged: list[int] = []
-    judge = answer.fault_of
+    judge = refutation.fault_of
 
     def counted(trace: Countermodel, *more: Any) -> str | None:
         judged.append(1)
@@ -276,20 +274,20 @@ def test_a_known_trace_is_judged_once_by_each_program(
         return origins(found), len(judged)
 
     found = rp.prove("v_lon(SV) > 20 m/s -> v_lon(SV) > 30 m/s", drive=False, jobs=1)
-    assert [type(x.evidence) for x in found.found.answers.values()] == [Refutation]
-    monkeypatch.setattr(answer, "fault_of", counted)
+    assert [type(x.evidence) for x in found.found.answers.values()] == [RefutingTrace]
+    monkeypatch.setattr(refutation, "fault_of", counted)
     assert asked() == (("cache",), 0)
     texts = contents(found)
-    archives.ship(tmp_path / "shipped/known", "prove", texts)
+    ship(tmp_path / "shipped/known", "prove", texts)
     assert asked() == (("shipped",), 1)
     assert asked() == (("shipped",), 0)
-    monkeypatch.setattr(archives, "program", lambda: "another program")
+    monkeypatch.setattr(archives, "program_digest", lambda: "another program")
     assert asked() == (("shipped",), 1)
     [(key, text)] = texts.items()
     data = json.loads(text)
     for instant in data["trace"]["instants"]:
         instant["values"] = dict.fromkeys(instant["values"], "0")
-    archives.ship(tmp_path / "shipped/known", "prove", {key: json.dumps(data)})
+    ship(tmp_path / "shipped/known", "prove", {key: json.dumps(data)})
     for _ in range(2):
         known, times = asked()
         assert known == ()
@@ -317,7 +315,7 @@ def test_every_shipped_archive_is_that_of_a_question() -> None:
 def test_a_sample_of_the_shipped_answers_is_as_computed(
     numbers: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(archives, "shipped", lambda _: FOLDER.parent)
+    monkeypatch.setattr(archives, "shipped_folder", lambda _: FOLDER.parent)
     there, again = rp.overlap(numbers, jobs=1), rp.overlap(numbers, jobs=1, fresh=True)
     assert {*origins(there)} == {"shipped"}
     assert there.verdicts == again.verdicts

@@ -11,24 +11,24 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.answer import ClaimAnswer, undecided
 from roadproof.evidence.claim import Claim
-from roadproof.extensions.surveys.classify.division import DivisionQuestion, ToDivide
+from roadproof.extensions.surveys.classify.division import DivisionQuestion, DivisionSettings
 from roadproof.extensions.surveys.coverage.claims import GapClaims
-from roadproof.extensions.surveys.coverage.looks import NeedJudge
-from roadproof.library.scenarios import Scenario, applied
+from roadproof.extensions.surveys.coverage.judges import NeedJudge
+from roadproof.library.scenarios import Scenario, apply_scenario
 from roadproof.questions.basis import Basis
-from roadproof.questions.question import OwnWork, walk
-from roadproof.questions.settle import Settled
+from roadproof.questions.decide import Decisions
+from roadproof.questions.question import OwnWork, walk_batch
 from roadproof.questions.store import Store
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.runtime import archives
-from roadproof.runtime.archives import SWITCH, archived
+from roadproof.runtime.archives import SWITCH, shipped_answers
 from roadproof.runtime.budget import Effort, Work
 from shipping.questions import QUESTIONS
-from study.asking import Asking
 from study.changes import MORE, changes_of
 from study.commands import EVERY
+from study.stored_question import StoredQuestion
 from study.test_keys import LEAF, NEAR
 
 KEYED = tuple(x for x in EVERY if x not in ("evaluate", "compare", "catalogue"))
@@ -66,12 +66,12 @@ class Stopped(Exception):
     """Nothing more is to be computed."""
 
 
-def nothing_known(question: DivisionQuestion, *_: object, **__: object) -> Settled:
+def nothing_known(question: DivisionQuestion, *_: object, **__: object) -> Decisions:
     """No claim of a division is settled: all cells are possible."""
-    return Settled({}, {})
+    return Decisions({}, {})
 
 
-def study_of(name: str, asking: Asking) -> Any:
+def study_of(name: str, asking: StoredQuestion) -> Any:
     found: list[Any] = []
 
     def stop(study: Any, *_: object, **__: object) -> None:
@@ -79,14 +79,14 @@ def study_of(name: str, asking: Asking) -> Any:
         raise Stopped
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("roadproof.frontends.api.questioned.settle", stop)
-        patch.setattr("roadproof.extensions.surveys.classify.division.settle", nothing_known)
+        patch.setattr("roadproof.frontends.api.question_answers.decide_claims", stop)
+        patch.setattr("roadproof.extensions.surveys.classify.division.decide_claims", nothing_known)
         with pytest.raises(Stopped):
             EVERY[name][0](asking, True)
     return found[0]
 
 
-def keys_of(name: str, asking: Asking) -> dict[str, str]:
+def keys_of(name: str, asking: StoredQuestion) -> dict[str, str]:
     """The key of each answer that the question wants; no archive is divided by anything else here."""
     study = study_of(name, asking)
     return first_keys(study)
@@ -95,20 +95,20 @@ def keys_of(name: str, asking: Asking) -> dict[str, str]:
 def first_keys(question: Any) -> dict[str, str]:
     """The keys of the claims that a question asks first."""
     store = Store(None, question.kind, question.work)
-    first = (walk(batch, lambda *_: None) for batch in question.batches({}))
+    first = (walk_batch(batch, lambda *_: None) for batch in question.batches({}))
     return {x: store.key(claim) for batch in first for x, claim in batch}
 
 
 @pytest.fixture(scope="module")
 def first() -> dict[str, dict[str, str]]:
-    return {name: keys_of(name, Asking()) for name in KEYED}
+    return {name: keys_of(name, StoredQuestion()) for name in KEYED}
 
 
 @pytest.mark.parametrize(("change", "name"), [(x, y) for x, those in SEEN_BY.items() for y in sorted(those)])
 def test_a_change_that_a_question_sees_changes_keys(
     change: str, name: str, first: Mapping[str, Mapping[str, str]]
 ) -> None:
-    now = keys_of(name, changes_of(name)[change](Asking()))
+    now = keys_of(name, changes_of(name)[change](StoredQuestion()))
     assert now.keys() == first[name].keys()
     assert any(now[x] != first[name][x] for x in now)
 
@@ -117,7 +117,7 @@ def test_a_change_that_a_question_sees_changes_keys(
 def test_a_change_that_a_question_does_not_see_leaves_keys(
     change: str, name: str, first: Mapping[str, Mapping[str, str]]
 ) -> None:
-    assert keys_of(name, changes_of(name)[change](Asking())) == first[name]
+    assert keys_of(name, changes_of(name)[change](StoredQuestion())) == first[name]
 
 
 ALIKE = {
@@ -141,12 +141,12 @@ SHARED = ("explore", "coverage")
 def test_every_option_of_a_question_changes_its_keys(
     name: str, more: str, first: Mapping[str, Mapping[str, str]]
 ) -> None:
-    now = keys_of(name, changes_of(name)[f"--{more}"](Asking()))
+    now = keys_of(name, changes_of(name)[f"--{more}"](StoredQuestion()))
     assert all(now[x] != first[name].get(x) for x in now)
 
 
 def test_lemmas_depend_on_the_values_that_they_assume() -> None:
-    asked = Asking(more={"lemmas": True})
+    asked = StoredQuestion(more={"lemmas": True})
     before, after = (keys_of("preventable", replace(asked, params=x)) for x in ({}, {"cc_braking": 4}))
     assert all(before[x] != after[x] for x in before if x in after and "careful" in x)
 
@@ -158,19 +158,19 @@ def test_no_two_answers_of_a_question_have_one_key(first: Mapping[str, Mapping[s
 
 def test_cells_have_keys_of_their_claims() -> None:
     def keys(text: str) -> dict[str, str]:
-        basis = Basis(Asking().edited("v_lon(SV) < 40 m/s", text).using.specification)
-        question = DivisionQuestion(basis, ToDivide(scenarios=(90, 91)))
+        basis = Basis(StoredQuestion().edited("v_lon(SV) < 40 m/s", text).using.specification)
+        question = DivisionQuestion(basis, DivisionSettings(scenarios=(90, 91)))
         store = Store(None, question.kind, question.work)
-        found, answers = dict[str, str](), dict[str, Answer]()
+        found, answers = dict[str, str](), dict[str, ClaimAnswer]()
         for _ in range(2):
             for batch in question.batches(answers):
                 own = batch.work if isinstance(batch, OwnWork) else question.work
 
-                def find(name: str, claim: Claim, work: Work = own) -> Answer:
+                def find(name: str, claim: Claim, work: Work = own) -> ClaimAnswer:
                     found[name] = replace(store, work=work).key(claim)
-                    return answers.setdefault(name, undecided(claim, Why.TOLD("none")))
+                    return answers.setdefault(name, undecided(claim, ReasonKind.TOLD("none")))
 
-                [*walk(batch, find)]
+                [*walk_batch(batch, find)]
         return found
 
     one, other = keys("v_lon(SV) < 40 m/s"), keys("v_lon(SV) < 39 m/s")
@@ -181,11 +181,11 @@ def test_cells_have_keys_of_their_claims() -> None:
 
 
 def test_gaps_depend_on_definitions_of_wider_sets() -> None:
-    def key(asking: Asking) -> str:
+    def key(asking: StoredQuestion) -> str:
         claims = GapClaims(Basis(asking.using.specification), ("mine",))
-        return claims.judged(NeedJudge(claims, "danger"), "any").digest()
+        return claims.judgement_claim(NeedJudge(claims, "danger"), "any").digest()
 
-    assert key(Asking().edited("v_lon(a) > 5 m/s", "v_lon(a) > 6 m/s")) != key(Asking())
+    assert key(StoredQuestion().edited("v_lon(a) > 5 m/s", "v_lon(a) > 6 m/s")) != key(StoredQuestion())
 
 
 def test_the_program_is_part_of_keys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -193,7 +193,7 @@ def test_the_program_is_part_of_keys(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     archives.remember("key", "{}")
     assert archives.recall("overlap", "key") is not None
-    monkeypatch.setattr(archives, "program", lambda: "another program")
+    monkeypatch.setattr(archives, "program_digest", lambda: "another program")
     assert archives.recall("overlap", "key") is None
 
 
@@ -203,7 +203,7 @@ def test_the_program_is_part_of_keys(tmp_path: Path, monkeypatch: pytest.MonkeyP
 )
 def test_limits_of_a_basis_are_part_of_its_keys(more: Mapping[str, Any]) -> None:
     basis = Basis(rp.load().specification)
-    query = applied(basis.specification, Scenario(4, "base"))
+    query = apply_scenario(basis.specification, Scenario(4, "base"))
 
     def key(about: Basis) -> str:
         return Store(None, "overlap", about.work).key(about.claim(query))
@@ -231,12 +231,12 @@ def test_shipped_archives_have_the_keys_of_their_questions(name: str) -> None:
         raise Stopped
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("roadproof.frontends.api.questioned.settle", stop)
-        patch.setattr("shipping.questions.settle", stop)
+        patch.setattr("roadproof.frontends.api.question_answers.decide_claims", stop)
+        patch.setattr("shipping.questions.decide_claims", stop)
         with pytest.raises(Stopped):
             QUESTIONS[name](jobs=1)
     [study] = found
-    there = archived(study.kind)
+    there = shipped_answers(study.kind)
     wanted = {*first_keys(study).values()}
     assert not there or wanted <= {*there}
     assert there or name not in ALWAYS_SHIPPED

@@ -12,7 +12,7 @@ from planting import plant
 from roadproof.errors import UsageError
 from roadproof.world import drive as pieces
 from roadproof.world.drive import Motion, Piece, motion_of, pieces_of
-from roadproof.world.motion import advance, starts_of, state_at
+from roadproof.world.motion import advance, piece_starts, state_at
 
 values = st.fractions(-5, 5, max_denominator=6)
 durations = st.fractions(Fraction(1, 6), 3, max_denominator=6)
@@ -28,14 +28,14 @@ def motions(draw):
 
 def before(motion, time):
     """The state at a time as the piece that lasts until then has it, whose acceleration may be another."""
-    begun = [state for state in starts_of(motion) if state.time < time or state.time == 0][-1]
+    begun = [state for state in piece_starts(motion) if state.time < time or state.time == 0][-1]
     return advance(begun, time - begun.time)
 
 
 @settings(max_examples=some(100), deadline=None, derandomize=True)
 @given(motions(), st.fractions(0, 10, max_denominator=8), st.fractions(0, 10, max_denominator=8))
 def test_within_a_piece_positions_are_areas_under_speeds(motion, one, other):
-    knots = [state.time for state in starts_of(motion)]
+    knots = [state.time for state in piece_starts(motion)]
     times = sorted({one, other, *knots})
     for low, high in pairwise(times):
         begin, end, step = state_at(motion, low), state_at(motion, high), high - low
@@ -51,7 +51,7 @@ def test_within_a_piece_positions_are_areas_under_speeds(motion, one, other):
 @settings(max_examples=50, deadline=None, derandomize=True)
 @given(motions())
 def test_a_knot_belongs_to_the_piece_that_begins_there(motion):
-    starts = starts_of(motion)
+    starts = piece_starts(motion)
     told = [(p.a_lon, p.a_lat, p.j_lon) for p in motion.pieces]
     assert [(x.a_lon, x.a_lat, x.j_lon) for x in starts] == told
     assert starts[0].time == 0
@@ -151,6 +151,8 @@ def test_a_duration_is_above_zero(entries):
 
 
 def test_an_acceleration_that_begins_anew_where_the_other_direction_changes_is_noticed(monkeypatch):
-    plant(monkeypatch, pieces, "pieces_of", "begun + j_lon * (time - ends_along[place] + duration)", "begun")
+    plant(
+        monkeypatch, pieces, "pieces_of", "initial + j_lon * (time - ends_along[place] + duration)", "initial"
+    )
     along, across = [(Fraction(2), Fraction(0), Fraction(1))], [(Fraction(1), Fraction(1))]
     assert disagreement(along, across, Fraction(3, 2))

@@ -1,14 +1,16 @@
-"""Scenarios that hold while no other one does, and traces with tabs, for those who write extensions."""
+"""A survey, traces with tabs and a driver model, for those who write extensions."""
 
 from roadproof.extension import Extension
 
 EXTENSION = Extension(
-    title="Scenarios that hold while no other one does; traces with tabs",
+    title="Scenarios that hold while no other one does; traces with tabs; an alert driver",
     audience="researchers",
     label="incubating",
-    needs=("pages", "surveys", "traffic"),
+    needs=("drivers", "pages", "surveys", "traffic"),
     questions={"alone": "question:Alone"},
     answers={"alone": "roadproof.extensions.surveys.surveying:SurveyAnswers"},
+    drivers={"alert": "driver:ALERT"},
+    specifications={"alert": "alert.spec", "alert_prevention": "alert_prevention.spec"},
     traces={".tsv": "tabs:read_trace"},
     sections={"survey": "page:SURVEY"},
 )

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from roadproof.extensions.pages.page.page_context import PageContext
-from roadproof.extensions.pages.page.results import Result, Words
+from roadproof.extensions.pages.page.results import PageResult, Words
 from roadproof.extensions.pages.page.section_kind import SectionKind, Values
 
 
@@ -15,7 +15,7 @@ class Part:
         self.columns = ["scenario", "verdict"]
 
 
-def _shown(result: Result, context: PageContext, words: Words) -> Values:
+def _shown(result: PageResult, context: PageContext, words: Words) -> Values:
     verdicts = result.data["verdicts"]
     assert isinstance(verdicts, list)
     entries = [{"scenario": x["name"], "verdict": x["verdict"]} for x in verdicts if isinstance(x, dict)]

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from roadproof.extensions.surveys.survey import Survey
 from roadproof.library.compose import both, negation
-from roadproof.library.scenarios import Scenario, applied, name_of
+from roadproof.library.scenarios import Scenario, apply_scenario, name_of
 from roadproof.library.specification import Query
 from roadproof.runtime.records import dataclass
 
@@ -21,7 +21,7 @@ class Alone(Survey):
     def scenarios(self) -> dict[str, Query]:
         """The scenarios of two vehicles, by name."""
         home = self.basis.specification
-        every = {name_of(n): applied(home, Scenario(n, home.set_name)) for n in self.asked.numbers}
+        every = {name_of(n): apply_scenario(home, Scenario(n, home.set_name)) for n in self.settings.numbers}
         return {name: x for name, x in every.items() if len(x.vehicles) == 2}
 
     @cached_property

@@ -8,7 +8,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.extensions.traffic.formats.samples import HEADER
-from roadproof.extensions.traffic.formats.table import Table
+from roadproof.extensions.traffic.formats.table import ColumnTable
 from roadproof.world.models import load_road
 from roadproof.world.road import Road
 
@@ -17,7 +17,7 @@ from roadproof.world.road import Road
 class Tabs:
     """The samples of a file, on the road main-2."""
 
-    table: Table
+    table: ColumnTable
     road: Road
     computed: bool = False
     faults: tuple[str, ...] = ()
@@ -39,4 +39,4 @@ def read_trace(path: Path, strict: bool) -> Tabs:
             columns[name] = np.array(cells) if name == "vehicle" else np.array(cells, dtype=float)
         except ValueError as error:
             raise InputError(f"{path}: column {name}: {error}") from None
-    return Tabs(Table(path, columns, len(rows) - 1), load_road("main-2"))  # type: ignore[arg-type]
+    return Tabs(ColumnTable(path, columns, len(rows) - 1), load_road("main-2"))  # type: ignore[arg-type]

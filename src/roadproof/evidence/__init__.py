@@ -1,4 +1,4 @@
-"""Certificates, drive files and kept answers: written, read strictly and checked without the finders.
+"""Certificates, drive files and other evidence: written, read strictly, and checked without the engines.
 
 May import semantics, library, world and logic; never engines.
 """

@@ -1,10 +1,11 @@
-"""Files of answers that are neither certificate, drive nor tree: what is undecided, and refuting traces."""
+"""The files of answers that are neither certificates, drives nor trees: undecided claims and traces."""
 
+from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
+from roadproof.core_record import JUDGED, REFUTATION, UNDECIDED
 from roadproof.evidence.answers import shared
-from roadproof.evidence.answers.doubt import Doubt
 from roadproof.evidence.codec import LEFT_OUT, Doc
 from roadproof.library.specification import Library
 from roadproof.runtime.records import dataclass
@@ -14,17 +15,49 @@ if TYPE_CHECKING:
     from roadproof.evidence.claim import Claim
     from roadproof.evidence.finding import Finding
 
-UNDECIDED: Final = "roadproof/undecided/1"
-REFUTATION: Final = "roadproof/refutation/1"
-JUDGED: Final = "roadproof/judged/1"
 OpenVerdict: TypeAlias = Literal[
     Verdict.UNKNOWN, Verdict.NONE_WITHIN, Verdict.PROVED_BOUNDED, Verdict.CROSSCHECK_FAILED
 ]
 
 
+class Cause(StrEnum):
+    """The cause of an UNKNOWN."""
+
+    WORK = "work"
+    CLOCK = "clock"
+    PROCESS = "process"
+    SOLVER = "solver"
+    PLACE = "place"
+    FACTS = "facts"
+    CERTIFICATE = "certificate"
+    LANES = "lanes"
+    INDUCTION = "induction"
+    ALTERNATION = "alternation"
+    FIRST_INSTANT = "first-instant"
+    SECOND_ORDER = "second-order"
+
+
+Tried: TypeAlias = Literal["proof", "traces", "drives"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnknownReportData:
+    """The cause of an UNKNOWN, the attempts, and the options that help."""
+
+    cause: Cause
+    tried: tuple[Tried, ...]
+    effort_helps: Annotated[bool, Doc("Whether a higher --effort or --timeout can change the answer.")]
+    remedy: Annotated[str, Doc("What helps, as an imperative; empty where no option is known to help.")]
+    options: Annotated[tuple[str, ...], Doc("Options of the command that follow the remedy.")]
+    without_assumptions: Annotated[
+        bool, Doc("Whether the remedy is to ask the claim without what it is assumed under.")
+    ]
+    detail: Annotated[str, Doc("What a solver or process said; else empty.")]
+
+
 @dataclass(frozen=True, kw_only=True)
 class AboutClaim:
-    """What a file says of the claim that it is about."""
+    """The fields by which a file names its claim."""
 
     set: shared.SetName
     options: shared.Options
@@ -33,14 +66,14 @@ class AboutClaim:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Undecided(AboutClaim):
-    """Why a claim is undecided, or within which limits the answer was looked for."""
+class UndecidedFile(AboutClaim):
+    """The reason why a claim is undecided, or the limits within which the verdict holds."""
 
     schema: Literal["roadproof/undecided/1"] = UNDECIDED
     verdict: OpenVerdict
     reason: shared.Reason
-    limits: Annotated[shared.KeptLimits | None, LEFT_OUT] = None
-    doubt: Annotated[Doubt | None, LEFT_OUT] = None
+    limits: Annotated[shared.LimitsField | None, LEFT_OUT] = None
+    doubt: Annotated[UnknownReportData | None, LEFT_OUT] = None
     work: Annotated[
         str | None, LEFT_OUT, Doc("Digest of the work after which it is undecided; as much finds no more.")
     ] = None
@@ -51,7 +84,7 @@ class Undecided(AboutClaim):
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedFile:
-    """What a given trace shows."""
+    """The judgement of a given trace."""
 
     schema: Literal["roadproof/judged/1"] = JUDGED
     files: Annotated[tuple[str, ...], Doc("SHA-256 of every file that the trace is read from.")]
@@ -70,12 +103,12 @@ class RefutationFile(AboutClaim):
 
 @dataclass(frozen=True, kw_only=True)
 class OwnEvidence(AboutClaim):
-    """Evidence of a kind that an extension adds, whose record names the class by its schema."""
+    """Evidence of a kind that an extension adds; the extension's record names the class by its schema."""
 
     def fault_for(self, claim: "Claim") -> str:
-        """Return why it is about another claim; nothing where it is about this one."""
+        """Return why the file is about another claim; empty if it is about this one."""
         raise NotImplementedError
 
     def check(self, path: Path, library: Library) -> "Finding":
-        """Return what the file shows, worked out again. Raises ``RoadproofError`` where it shows nothing."""
+        """Return the finding of the file, recomputed. Raises ``RoadproofError`` if the file shows nothing."""
         raise NotImplementedError

@@ -1,9 +1,8 @@
-"""The opaque reading of a claim: state predicates become atoms, functions from time to truth.
+"""The abstraction that proofs use: state predicates of a claim become atoms, opaque functions of time.
 
-A definition whose body compares, occupies or quantifies over lanelets is one atom (``aheadOf``,
-``atLane``); definitions that only combine others (``danger``, ``accel``) are looked through, and so
-are quantifiers over lanes. Two atoms are the same when their bodies are built alike, whatever they
-and their bound variables are called.
+A definition whose body compares, occupies or quantifies over lanelets is one atom (``aheadOf``, ``atLane``).
+Definitions that only combine others (``danger``, ``accel``) are expanded, and so are quantifiers over lanes.
+Two atoms are the same if their bodies are equal up to the names of bound variables.
 """
 
 from collections.abc import Iterator
@@ -13,7 +12,7 @@ from typing import Literal, TypeAlias, assert_never
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Application, Formula
-from roadproof.logic.node import once
+from roadproof.logic.node import memoised
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import leaves_of, rename, road_names, without_names
 from roadproof.logic.show import text
@@ -24,10 +23,10 @@ Reading: TypeAlias = Literal["states", "lanelets", "names"]
 
 @dataclass
 class Atoms:
-    """The atoms met so far: what they are called, by what they mean up to bound variables; and back.
+    """The atoms of a claim: ``names`` by meaning, up to bound variables, and ``named``, the meanings by name.
 
-    ``reading``: by ``lanelets``, quantifiers over these are no atoms, and are looked through like all others;
-    by ``names``, definitions that speak of several instants are atoms, too.
+    ``reading``: with ``lanelets``, quantifiers over lanelets are expanded too; with ``names``, definitions
+    about several instants are atoms, too.
     """
 
     names: dict[Formula, str] = field(default_factory=dict)
@@ -35,18 +34,19 @@ class Atoms:
     reading: Reading = "states"
 
     def abstract(self, formula: Formula) -> Formula:
-        """``formula`` with each atom as ``Application(unique text, (), meaning)`` and no other names.
+        """Return the formula with each atom as ``Application(unique name, (), meaning)``, others expanded.
 
-        The body of a quantifier over the road is left as it is, to be abstracted at each instance.
+        The body of a quantifier over the road stays as it is; it is abstracted at each instance.
         """
-        done: dict[Formula, Formula] = {}
+        abstracted: dict[Formula, Formula] = {}
 
         def visit(current: Formula) -> Formula:
-            if current not in done:
-                done[current] = self._atom(current) if self._is_atom(current) else descend(current)
-            return done[current]
+            if current not in abstracted:
+                abstracted[current] = self._atom(current) if self._is_atom(current) else descend(current)
+            return abstracted[current]
 
         def descend(current: Formula) -> Formula:
+            """Abstract the parts of a formula that is no atom itself."""
             if isinstance(current, Application):
                 return visit(current.body)
             if isinstance(current, f.Some | f.Every):
@@ -67,7 +67,7 @@ class Atoms:
                 assert_never(self.reading)
 
     def meaning(self, name: str) -> Formula:
-        """What an atom says. Raises ``InputError`` for a name that no atom has."""
+        """Return the formula that an atom stands for. Raises ``InputError`` for an unknown name."""
         if name not in self.named:
             raise InputError(f"'{name}' is no atom of the claim")
         return self.named[name]
@@ -76,19 +76,19 @@ class Atoms:
         meaning = without_names(formula)
         key = up_to_variables(meaning)
         if key not in self.names:
-            shown = text(as_syntax(formula, expand=False))
-            name, count = shown, 1
+            text_of_atom = text(as_syntax(formula, expand=False))
+            name, count = text_of_atom, 1
             while name in self.named:
                 count += 1
-                name = f"{shown} #{count}"
+                name = f"{text_of_atom} #{count}"
             self.names[key] = name
             self.named[name] = meaning
         return Application(self.names[key], (), self.named[self.names[key]])
 
 
-@once
+@memoised
 def is_atom(formula: Formula) -> bool:
-    """Whether ``formula`` is read as one opaque state predicate."""
+    """Return whether a formula counts as one opaque state predicate."""
     match formula:
         case f.Compare() | f.Occupies():
             return True
@@ -98,56 +98,54 @@ def is_atom(formula: Formula) -> bool:
             return (
                 f.is_state(body)
                 and not any(_is_open(part) for part in f.subformulas(body))
-                and any(not isinstance(part, Application | f.Truth) for part in _combined(body))
+                and any(not isinstance(part, Application | f.Truth) for part in _parts_of(body))
             )
-        case _:
+        case f.Truth() | f.Not() | f.And() | f.Or() | f.Until() | f.Eventually() | f.Always():
             return False
 
 
 def is_temporal_name(formula: Formula) -> bool:
-    """Whether ``formula`` is a definition that speaks of several instants."""
+    """Return whether a formula is a definition about several instants."""
     return isinstance(formula, Application) and not f.is_state(formula)
 
 
-@once
+@memoised
 def has_quantifier(formula: Formula) -> bool:
-    """Whether ``formula`` quantifies over the road, through the names of definitions."""
+    """Return whether a formula quantifies over the road, also inside definitions."""
     return isinstance(formula, f.Some | f.Every) or any(map(has_quantifier, f.children(formula)))
 
 
-@once
+@memoised
 def _is_open(formula: Formula) -> bool:
-    """Whether ``formula`` quantifies over lanes, or over lanelets of which it says nothing."""
-    match formula:
-        case f.Some(variable, domain, body) | f.Every(variable, domain, body):
-            return domain.kind in ("lanes", "adjacent") or variable not in road_names(body)
-        case _:
-            return False
+    """Return whether a formula quantifies over lanes, or over lanelets that its body does not mention."""
+    if not isinstance(formula, f.Some | f.Every):
+        return False
+    return formula.domain.kind in ("lanes", "adjacent") or formula.variable not in road_names(formula.body)
 
 
-@once
+@memoised
 def is_rigid(formula: Formula) -> bool:
-    """Whether time cannot change ``formula``: it speaks of parameters and variables only."""
+    """Return whether time cannot change a formula, as it mentions only parameters and variables."""
     if any(isinstance(part, f.Occupies | f.Some | f.Every) for part in f.subformulas(formula)):
         return False
     return not any(isinstance(leaf, Varying) for leaf in leaves_of(formula))
 
 
-def _combined(formula: Formula) -> Iterator[Formula]:
-    """What ``formula`` combines with not, and, or."""
+def _parts_of(formula: Formula) -> Iterator[Formula]:
+    """Yield the parts that a formula combines with not, and, or."""
     if isinstance(formula, f.Not | f.And | f.Or):
         for child in f.children(formula):
-            yield from _combined(child)
+            yield from _parts_of(child)
     else:
         yield formula
 
 
 def up_to_variables(formula: Formula) -> Formula:
-    """``formula`` without names of definitions, and with bound variables called by their depth."""
+    """Return the formula with definitions expanded and bound variables named by their depth."""
     return _with_numbers(without_names(formula))
 
 
-@once
+@memoised
 def _with_numbers(bare: Formula) -> Formula:
     if isinstance(bare, f.Some | f.Every):
         return _numbered(bare, 1)
@@ -155,9 +153,7 @@ def _with_numbers(bare: Formula) -> Formula:
 
 
 def _numbered(current: Formula, depth: int) -> Formula:
-    match current:
-        case f.Some(variable, domain, body) | f.Every(variable, domain, body):
-            inner = rename(body, variable, f"#{depth}")
-            return type(current)(f"#{depth}", domain, _numbered(inner, depth + 1))
-        case _:
-            return f.with_children(current, tuple(_numbered(c, depth) for c in f.children(current)))
+    if not isinstance(current, f.Some | f.Every):
+        return f.with_children(current, tuple(_numbered(c, depth) for c in f.children(current)))
+    inner = rename(current.body, current.variable, f"#{depth}")
+    return type(current)(f"#{depth}", current.domain, _numbered(inner, depth + 1))

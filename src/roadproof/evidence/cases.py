@@ -1,4 +1,4 @@
-"""Maxima and minima resolved by cases: nonlinear solvers settle polynomials, and get lost in choices."""
+"""Case distinctions that remove maxima and minima, which nonlinear solvers handle badly."""
 
 from collections.abc import Iterator, Sequence
 from itertools import islice
@@ -13,18 +13,18 @@ MOST_CASES = 64
 
 
 def split(formulas: Sequence[Formula]) -> list[list[Formula]]:
-    """Conjunctions without maxima and minima, one of which holds wherever all ``formulas`` do.
+    """Return conjunctions without maxima and minima; one of them holds wherever all formulas hold.
 
-    Each adds the comparisons that it assumes. Where there would be more than ``MOST_CASES``, the
-    formulas come back as they are.
+    Each conjunction includes the comparisons of its case. With more than ``MOST_CASES`` cases, the only
+    result is the formulas themselves.
     """
     lifted = [f.transform(x, _lift) for x in formulas]
-    made = list(islice(_cases(lifted), MOST_CASES + 1))
-    return made if len(made) <= MOST_CASES else [list(formulas)]
+    conjunctions = list(islice(_cases(lifted), MOST_CASES + 1))
+    return conjunctions if len(conjunctions) <= MOST_CASES else [list(formulas)]
 
 
 def _lift(formula: Formula) -> Formula:
-    """A comparison with a maximum as a summand is one of comparisons: x > max(p, q) is x > p and x > q."""
+    """Return a comparison with a maximum as comparisons: x > max(p, q) becomes x > p and x > q."""
     if not isinstance(formula, f.Compare):
         return formula
     left, right = _outward(formula.left), _outward(formula.right)
@@ -40,13 +40,13 @@ def _lift(formula: Formula) -> Formula:
 
 
 def _outward(term: Term) -> Term:
-    """``term`` with a maximum or minimum that is added or scaled by a number moved to the outside."""
+    """Return the term with a maximum or minimum moved outside of sums and of products with a number."""
     match term:
         case t.Sum(terms):
-            moved = [_outward(part) for part in terms]
-            for place, part in enumerate(moved):
+            summands = [_outward(part) for part in terms]
+            for place, part in enumerate(summands):
                 if isinstance(part, t.Maximum | t.Minimum):
-                    before, after = moved[:place], moved[place + 1 :]
+                    before, after = summands[:place], summands[place + 1 :]
                     return type(part)(tuple(t.Sum((*before, choice, *after)) for choice in part.terms))
         case t.Product((t.Number(factor, _), other)):
             inner = _outward(other)
@@ -55,8 +55,6 @@ def _outward(term: Term) -> Term:
                 if factor >= 0:
                     return type(inner)(scaled)
                 return t.Minimum(scaled) if isinstance(inner, t.Maximum) else t.Maximum(scaled)
-        case _:
-            pass
     return term
 
 
@@ -76,12 +74,12 @@ def _cases(formulas: list[Formula]) -> Iterator[list[Formula]]:
 
 
 def _comparisons(extremum: t.Maximum | t.Minimum) -> tuple[f.Comparison, f.Comparison]:
-    """How the first term compares with the others where it is the extremum, and where it is not."""
+    """Return how the first term compares with the others if it is the extremum, and if it is not."""
     return (">=", "<") if isinstance(extremum, t.Maximum) else ("<=", ">")
 
 
 def _extrema(term: Term) -> Iterator[t.Maximum | t.Minimum]:
-    """The maxima and minima in ``term``, inner ones first."""
+    """Yield the maxima and minima in a term, inner ones first."""
     for child in t.children(term):
         yield from _extrema(child)
     if isinstance(term, t.Maximum | t.Minimum):
@@ -89,4 +87,4 @@ def _extrema(term: Term) -> Iterator[t.Maximum | t.Minimum]:
 
 
 def _replace(formula: Formula, old: Term, new: Term) -> Formula:
-    return map_terms(formula, lambda term: t.put(term, old, new))
+    return map_terms(formula, lambda term: t.replace_term(term, old, new))

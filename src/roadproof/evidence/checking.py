@@ -1,4 +1,4 @@
-"""One file of evidence, checked by what its schema says that it is, without what made it."""
+"""The check of one file of evidence, by its schema and without the program that made it."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -6,75 +6,87 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TypeAlias
 
+from roadproof.core_record import CERTIFICATE, DRIVES, JUDGED, NONE_WITHIN, REFUTATION
 from roadproof.errors import InputError, MissingSolverError, RoadproofError
-from roadproof.evidence import certificate, drive_file, none_within
-from roadproof.evidence.answer_files import JUDGED, REFUTATION, OwnEvidence, RefutationFile
+from roadproof.evidence import drive_file
+from roadproof.evidence.answer_files import OwnEvidence, RefutationFile
 from roadproof.evidence.answers.proofs import misnamed, shown
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.certificate_file import read_certificate_data
+from roadproof.evidence.certify import check_certificate, unreadable_reason
 from roadproof.evidence.codec import read
-from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict
+from roadproof.evidence.drive_file import DriveFile, other_values
+from roadproof.evidence.finding import (
+    Acceptance,
+    Finding,
+    LimitRemark,
+    RemarkKind,
+    SecondOpinion,
+    parameter_remark,
+)
 from roadproof.evidence.judged import judge_file, times_data
-from roadproof.evidence.none_within import Derive, Derived, NoneWithinFile
+from roadproof.evidence.none_within import NoneWithinFile
+from roadproof.evidence.none_within_check import Derive, Derived, deviations, first_fault
+from roadproof.evidence.none_within_file import read_none_within
 from roadproof.evidence.refutation import judge_trace
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.evidence.subject import SubjectKind
-from roadproof.extension import entries, imported
-from roadproof.library.bind import default_values, values_with
+from roadproof.extension import entries, import_entry
+from roadproof.library.assumption import assumes_motion, claim_statement
 from roadproof.library.elaborate import read_claim
-from roadproof.library.motion import is_moving, statement
-from roadproof.library.scenario_references import own_names
-from roadproof.library.scenarios import Scenario, applied, name_of
+from roadproof.library.scenario_references import vehicles_by_role
+from roadproof.library.scenarios import Scenario, apply_scenario, name_of
 from roadproof.library.specification import Library, Query
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import parameters_of
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.reasons import NO_REASON, Reason, ReasonKind
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.records import dataclass
-from roadproof.semantics.exact.exact import Judgement
+from roadproof.semantics.exact.judging import Judgement
 from roadproof.semantics.exact.replay import first_overlap
 
 FindLabel: TypeAlias = Callable[[str, str], "tuple[str, str, int | None] | None"]
-"""Property, part and scenario of a claim in a set, where it is a template property."""
-SCHEMAS = (certificate.SCHEMA, *drive_file.SCHEMAS_READ, none_within.SCHEMA)
-"""The files of evidence that are checked alone."""
-_TEMPLATE = ("P", "C")  # what labels of template properties begin with, before a digit
+"""Returns property, part and scenario of a claim in a set; None if it is no template property."""
+SCHEMAS = (CERTIFICATE, *DRIVES, NONE_WITHIN)
+"""The schemas of evidence that can be checked alone."""
+_TEMPLATE = ("P", "C")  # first letters of template properties; a digit follows
 
 
 @dataclass(frozen=True)
 class Checker:
-    """``ask`` answers sat, unsat or unknown to a script; ``find_label`` knows the template properties.
+    """A checker with a library, an SMT solver and the names of the template properties.
 
-    ``ruled``: what was said of it elsewhere: of a certificate in place of asking for its queries, of a drive
-    beside judging it. ``derive``: the encoder, for files that show a NONE-WITHIN.
+    ``ask`` answers sat, unsat or unknown to an SMT-LIB script; ``find_label`` returns the template property
+    of a claim. ``opinion``: the verdict of a kernel; it replaces the queries of a certificate, and must agree
+    about a drive. ``derive``: the encoder, which derives the programs of a NONE-WITHIN file again.
     """
 
     library: Library
     ask: Callable[[str], str]
     find_label: FindLabel
-    ruled: OtherVerdict | None = None
+    opinion: SecondOpinion | None = None
     derive: Derive | None = None
 
     def check(self, path: Path) -> Finding:
-        """What a file shows. Never fails for what is in the file."""
+        """Return the finding of a file. Errors in the file become findings; only a missing solver raises."""
         try:
             content = read_json(path)
             schema = Fields(content, str(path)).text("schema")
-            if schema == certificate.SCHEMA:
-                return self._certificate(path, certificate.read_certificate_data(content, str(path)))
-            if schema in drive_file.SCHEMAS_READ:
+            if schema == CERTIFICATE:
+                return self._certificate(path, read_certificate_data(content, str(path)))
+            if schema in DRIVES:
                 return self._drive(path, content)
             if schema == JUDGED:
-                why = Why.WITH_QUESTION()
+                why = ReasonKind.WITH_QUESTION()
                 return Finding(str(path), "test", Acceptance.UNREADABLE, why)
             if schema == REFUTATION:
                 return self._refutation(path, read(RefutationFile, content, str(path)))
-            if schema == none_within.SCHEMA and self.derive is not None:
-                file = none_within.read_none_within(content, str(path))
+            if schema == NONE_WITHIN and self.derive is not None:
+                file = read_none_within(content, str(path))
                 return self._none_within(path, file, self.derive(file, self.library))
             own = entries("evidence")
             if schema in own:
-                kind: type[OwnEvidence] = imported(own[schema])
+                kind: type[OwnEvidence] = import_entry(own[schema])
                 return read(kind, content, str(path)).check(path, self.library)
             raise InputError(f"its schema is {schema[:60]!r}, but must be {' or '.join(SCHEMAS)}")
         except MissingSolverError:
@@ -82,26 +94,28 @@ class Checker:
         except BudgetExceeded as late:
             return Finding(str(path), "", Acceptance.UNDECIDED, late.reason)
         except RoadproofError as error:
-            return Finding(str(path), "", Acceptance.UNREADABLE, Why.TOLD(without_place(str(error), path)))
+            return Finding(
+                str(path), "", Acceptance.UNREADABLE, ReasonKind.TOLD(without_place(str(error), path))
+            )
         except Exception as error:
             # One file must not take the others with it; the exit code says whose fault it is.
             fault = f"{type(error).__name__}: {error}"[:300]
-            return Finding(str(path), "", Acceptance.FAULT, Why.TOLD(fault))
+            return Finding(str(path), "", Acceptance.FAULT, ReasonKind.TOLD(fault))
 
     def _certificate(self, path: Path, file: Certificate) -> Finding:
         outcome, reason = self._rule(file)
-        moving = is_moving(file.assumed.said)
+        moving = assumes_motion(file.assumed.texts)
         label = None if moving else self.find_label(file.claim, file.set_name)
         named_by = label_of(file)
         if outcome is Acceptance.ACCEPTED and named_by is not None and named_by != label:
-            outcome, reason = Acceptance.REJECTED, Why.TOLD(misnamed("it", named_by, label))
+            outcome, reason = Acceptance.REJECTED, ReasonKind.TOLD(misnamed("it", named_by, label))
         if outcome is Acceptance.UNREADABLE:
             reason = with_hint(reason, file.claim)
         named = shown(label, file.set_name)
-        told = statement(file.assumed.said, file.claim)
-        ruled = self.ruled or OtherVerdict(outcome, reason, "")
-        read = (*ruled.checked, *other_readings(file.options, self.library))
-        more = (read, ruled.unchecked) if outcome is Acceptance.ACCEPTED else ((), ())
+        claim = claim_statement(file.assumed.texts, file.claim)
+        opinion = self.opinion or SecondOpinion(outcome, reason, "")
+        readings = (*opinion.checked, *other_readings(file.options, self.library))
+        notes = (readings, opinion.unchecked) if outcome is Acceptance.ACCEPTED else ((), ())
         return Finding(
             str(path),
             "certificate",
@@ -109,42 +123,45 @@ class Checker:
             reason,
             "PROVED",
             named,
-            told,
-            *more,
-            kernel=ruled.word,
+            claim,
+            *notes,
+            kernel=opinion.word,
             subject=SubjectKind.OTHER if label is None else SubjectKind.PROPERTY,
             name="" if label is None else named,
         )
 
     def _rule(self, file: Certificate) -> tuple[Acceptance, Reason]:
-        if self.ruled is None:
-            return certificate.rule(file, self.library, self.ask)
-        unreadable = certificate.unreadable(file, self.library)
-        return (Acceptance.UNREADABLE, unreadable) if unreadable else (self.ruled.outcome, self.ruled.reason)
+        """Return whether a certificate is accepted, by the kernel if there is one, and the reason if not."""
+        if self.opinion is None:
+            return check_certificate(file, self.library, self.ask)
+        unreadable = unreadable_reason(file, self.library)
+        return (
+            (Acceptance.UNREADABLE, unreadable) if unreadable else (self.opinion.outcome, self.opinion.reason)
+        )
 
     def _refutation(self, path: Path, file: RefutationFile) -> Finding:
         home = self.library.select(file.set, file.options)
         outcome, reason = judge_trace(file.trace, home, file.claim, str(path), file.assuming)
-        if self.ruled is not None and outcome is Acceptance.ACCEPTED:
-            outcome, reason = self.ruled.outcome, self.ruled.reason
-        claim = statement(file.assuming, file.claim)
+        if self.opinion is not None and outcome is Acceptance.ACCEPTED:
+            outcome, reason = self.opinion.outcome, self.opinion.reason
+        claim = claim_statement(file.assuming, file.claim)
         checked = ("judged on its trace",) if outcome is Acceptance.ACCEPTED else ()
-        word = "" if self.ruled is None else self.ruled.word
-        said = Finding(str(path), "trace", outcome, reason, "REFUTED", "", claim, checked)
-        return replace(said, kernel=word)
+        word = "" if self.opinion is None else self.opinion.word
+        finding = Finding(str(path), "trace", outcome, reason, "REFUTED", "", claim, checked)
+        return replace(finding, kernel=word)
 
     def _none_within(self, path: Path, file: NoneWithinFile, derived: Derived) -> Finding:
-        """Trees are checked against programs that the encoder derives again from the question."""
-        fault = none_within.first_fault(file, derived)
+        """Return the finding of trees, checked against programs that the encoder derives again."""
+        fault = first_fault(file, derived)
         query = read_claim(self.library.select(file.set_name, file.options), file.formula)
-        reason = Why.TOLD(fault) if fault else self._question_fault(file, query)
+        reason = ReasonKind.TOLD(fault) if fault else self._question_fault(file, query)
         outcome = Acceptance.REJECTED if reason else Acceptance.ACCEPTED
-        if self.ruled is not None and not reason:
-            outcome, reason = self.ruled.outcome, self.ruled.reason
+        if self.opinion is not None and not reason:
+            outcome, reason = self.opinion.outcome, self.opinion.reason
         label = shown(None if file.scenario is None else ("", "", file.scenario), file.set_name)
-        limits = (derived.limits, *none_within.own_parts(file), *other_readings(file.options, self.library))
+        limits = (derived.limits, *deviations(file), *other_readings(file.options, self.library))
         checked, unchecked = ((), ()) if reason else (limits, ("the encoder",))
-        word = "" if self.ruled is None else self.ruled.word
+        word = "" if self.opinion is None else self.opinion.word
         return Finding(
             str(path),
             "certificate",
@@ -161,18 +178,18 @@ class Checker:
     def _drive(self, path: Path, content: object) -> Finding:
         file = drive_file.read_drive(content, str(path))
         ruling = judge_file(file, self.library)
-        reason = ruling.reason or self._untold(file, content, ruling.judgement)
+        reason = ruling.reason or self._statement_fault(file, content, ruling.judgement)
         outcome = Acceptance.REJECTED if reason else Acceptance.ACCEPTED
         if not ruling.readable:
             outcome, reason = Acceptance.UNREADABLE, with_hint(reason, file.formula)
         label = shown(None if file.scenario is None else ("", "", file.scenario), file.set_name)
-        checked, unchecked = ((), ()) if reason else said_of(file, self.library)
+        checked, unchecked = ((), ()) if reason else checked_parts(file, self.library)
         checked += other_readings(file.options, self.library) if checked else ()
         word = ""
-        if self.ruled is not None:
-            word = self.ruled.word
+        if self.opinion is not None:
+            word = self.opinion.word
             if outcome is Acceptance.ACCEPTED:
-                outcome, reason = self.ruled.outcome, self.ruled.reason
+                outcome, reason = self.opinion.outcome, self.opinion.reason
         if not reason and "natural" in Fields(content, str(path)).mapping("verdict"):
             unchecked = (*unchecked, "whether it is natural")
         return Finding(
@@ -188,78 +205,73 @@ class Checker:
             kernel=word,
         )
 
-    def _untold(self, file: DriveFile, content: object, judgement: Judgement | None) -> Reason:
-        """What a drive file says beside its formula, and is not so; or does not say, and should."""
+    def _statement_fault(self, file: DriveFile, content: object, judgement: Judgement | None) -> Reason:
+        """Return the first wrong or missing statement of a drive file beside its formula, or nothing."""
         query = read_claim(self.library.select(file.set_name, file.options), file.formula)
         fault = self._question_fault(file, query)
         if fault:
             return fault
-        said = Fields(Fields(content, "it").mapping("verdict"), "its verdict", _VERDICT)
-        if said.has("verdict") and said.text("verdict") != "WITNESSED":
-            return Why.OTHER_VERDICT(said.text("verdict"))
-        if said.has("view") and said.text("view") != "dense":
-            return Why.OTHER_VIEW(said.text("view"))
-        if said.has("natural"):
-            said.flag("natural")
-        if said.has("times") and judgement is not None and said.get("times") != times_data(judgement):
-            return Why.OTHER_TIMES()
+        verdict = Fields(Fields(content, "it").mapping("verdict"), "its verdict", _VERDICT)
+        if verdict.has("verdict") and verdict.text("verdict") != "WITNESSED":
+            return ReasonKind.OTHER_VERDICT(verdict.text("verdict"))
+        if verdict.has("view") and verdict.text("view") != "dense":
+            return ReasonKind.OTHER_VIEW(verdict.text("view"))
+        if verdict.has("natural"):
+            verdict.flag("natural")
+        if verdict.has("times") and judgement is not None and verdict.get("times") != times_data(judgement):
+            return ReasonKind.OTHER_TIMES()
         return NO_REASON
 
     def _question_fault(self, file: DriveFile | NoneWithinFile, query: Query) -> Reason:
-        """Which value a file lacks, or why its formula is not that of the scenario that it names."""
+        """Return which value a file lacks, or why its formula is not that of the scenario that it names."""
         specification = self.library.select(file.set_name, file.options)
-        unsaid = [x for x in specification.options if x not in file.options]
-        unsaid += [x for x in parameters_of(query.formula) if x not in file.values]
-        if unsaid:
-            return Why.UNSAID(unsaid[0])
+        missing = [x for x in specification.options if x not in file.options]
+        missing += [x for x in parameters_of(query.formula) if x not in file.values]
+        if missing:
+            return ReasonKind.UNSAID(missing[0])
         if file.scenario is None:
             return NO_REASON
         if name_of(file.scenario) not in specification.definitions:
-            return Why.NO_SCENARIO(file.scenario)
+            return ReasonKind.NO_SCENARIO(file.scenario)
         scenario = Scenario(file.scenario, file.set_name)
-        whole, own = applied(specification, scenario), own_names(specification, query.claim, scenario)
-        same = whole.formula == query.formula or own
-        return NO_REASON if same else Why.OTHER_SCENARIO(file.scenario, file.formula)
+        applied = apply_scenario(specification, scenario)
+        roles = vehicles_by_role(specification, query.claim, scenario)
+        agrees = applied.formula == query.formula or roles
+        return NO_REASON if agrees else ReasonKind.OTHER_SCENARIO(file.scenario, file.formula)
 
 
 _VERDICT = ("verdict", "view", "natural", "times")
 
 
 def label_of(file: Certificate) -> tuple[str, str, int | None] | None:
-    """The template property that a certificate says it is of; None where it has a name of another kind."""
+    """Return the template property that a certificate claims to prove; None for names of another kind."""
     name, _, part = file.property.partition("-")
     if name[:1] in _TEMPLATE and name[1:].isascii() and name[1:].isdigit():
         return name, part, file.scenario
     return None if file.scenario is None else (file.property, "", file.scenario)
 
 
-def said_of(file: DriveFile, library: Library) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """What was checked of a drive that is accepted, and what was not, in words."""
+def checked_parts(file: DriveFile, library: Library) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return which parts of an accepted drive were checked, and which were not, as text."""
     other = other_values(file, library)
-    checked = ["dense, unbounded time", f"with {', '.join(other)}" if other else "declared parameters"]
+    checked = ["dense, unbounded time", parameter_remark(other)]
     overlap = first_overlap(file.drive, None) if len(file.drive.vehicles) > 1 else None
     unchecked = ["limits of vehicles"]
     if overlap is None:
         checked += ["boxes apart for ever"] * (len(file.drive.vehicles) > 1)
     elif file.overlaps_allowed:
-        checked.append(f"collisions allowed: {overlap}")
+        checked.append(LimitRemark(RemarkKind.COLLISIONS, f"collisions allowed: {overlap}", "allowed"))
     else:
-        checked.append(f"boxes apart up to {_seconds(file.horizon)} s; after that {overlap}")
+        text = f"boxes apart up to {_seconds(file.horizon)} s; after that {overlap}"
+        checked.append(LimitRemark(RemarkKind.COLLISIONS, text))
     return tuple(checked), tuple(unchecked)
 
 
 def other_readings(options: Mapping[str, str], library: Library) -> tuple[str, ...]:
-    """Readings of a file that are not those by default, in words."""
+    """Return the options of a file that differ from the defaults, as text."""
     usual = library.select().options
     other = [f"{name}={value}" for name, value in sorted(options.items()) if usual.get(name) != value]
     return (f"read with {', '.join(other)}",) if other else ()
-
-
-def other_values(file: DriveFile, library: Library) -> list[str]:
-    """The parameters of a drive file with other values than those declared, in words."""
-    declared = default_values(library)
-    values = values_with(library, file.values)
-    return [f"{name}={value}" for name, value in sorted(values.items()) if declared.get(name) != value]
 
 
 def _seconds(value: Fraction) -> str:
@@ -267,14 +279,16 @@ def _seconds(value: Fraction) -> str:
 
 
 def with_hint(reason: Reason, claim: str) -> Reason:
-    """Why a claim cannot be read, with what to do where it is well written."""
+    """Return the reason why a claim cannot be read, with the hint to pass ``--spec`` if its syntax is
+    right.
+    """
     try:
         parse_claim(claim)
     except RoadproofError:
         return reason
-    return Why.NEEDS_SPECIFICATIONS(reason.split("\n", 1)[0])
+    return ReasonKind.NEEDS_SPECIFICATIONS(reason.split("\n", 1)[0])
 
 
 def without_place(message: str, path: Path) -> str:
-    """A message without the path in front, which a finding says anyway."""
+    """Return a message without the path in front, since the finding names the file."""
     return message.removeprefix(f"{path}: ").removeprefix(f"{path} ").removeprefix(f"{path}, ")

@@ -1,10 +1,12 @@
-"""Claims: all that an engine is asked, as one closed value with a digest.
+"""Claims: complete questions to an engine, as closed values with a digest.
 
-A ``Claim`` holds the elaborated formula, in which every definition is written out, the bounds and values of
-exactly the parameters that occur in it, and how it is asked: of all traces, of drives to be found, of a given
-trace, or of initial values of a driver model. Two claims are equal where an engine cannot tell them apart, so
-a digest is a sound key for answers that are kept. ``text`` is for people: no answer depends on it.
+A ``Claim`` holds the elaborated formula, with every definition expanded, and the bounds and values of exactly
+the parameters that occur in it. Its mode says what is asked: about all traces, drives to find, a given trace,
+or initial values of a driver model. Two claims are equal if an engine cannot tell them apart, so a digest is
+a sound key for stored answers. ``text`` is for people: no answer depends on it.
 """
+
+from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
@@ -13,7 +15,6 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, Protocol, TypeAlias, runtime_checkable
 
 from roadproof.library.elaborate import read_claim
-from roadproof.library.motion import is_moving, under_limits, values_said
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.logic.formula import Application, Formula, children, intervals
 from roadproof.logic.rewrite import parameters_of
@@ -24,18 +25,18 @@ from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 from roadproof.world.road import Road
 from roadproof.world.units import UNITS
-from roadproof.world.vehicle import Vehicle
 
 if TYPE_CHECKING:
-    from roadproof.evidence.answer import Answer
+    from roadproof.evidence.answer import ClaimAnswer
     from roadproof.evidence.drive_file import DriveFile
+    from roadproof.world.vehicle import Vehicle
 
 Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
 Engine: TypeAlias = Literal["milp", "smt"]
 HELP: Final = "help-"
-"""How names of claims begin that only help with others: a doubt about one is none about the question."""
+"""The prefix of names of auxiliary claims; an UNKNOWN for one of them leaves the question decided."""
 Means: TypeAlias = Literal["search", "proof", "known"]
-"""How drives are asked for: a search, a proof that there is none, or drives that are known."""
+"""The means to decide an existence claim: a search, a proof that no drive exists, or known drives."""
 
 
 @dataclass(frozen=True)
@@ -50,28 +51,28 @@ class OccurringParameter:
 
 @dataclass(frozen=True)
 class Valid:
-    """The formula is to hold on all traces; on motions within limits where ``moving``.
+    """The mode of claims that must hold on all traces; on all motions within limits if ``moving``.
 
-    ``restricted``: the formula under the limits and values that are assumed, where any are. ``within``: on
-    drives only, as they are looked for. ``assuming``: the words that say what is assumed.
+    ``restricted``: the formula under the assumed limits and values, if any. ``within``: the class of drives
+    that the claim is restricted to, as in a search for them. ``assuming``: the assumptions as text.
     """
 
     moving: bool = False
     values: tuple[tuple[str, Fraction], ...] = ()
     restricted: Formula | None = None
-    within: "Exists | None" = None
+    within: Exists | None = None
     assuming: tuple[str, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)
 class Exists:
-    """A drive is to be found on which the formula holds: where, with whom, for how long, and which one.
+    """The mode of claims that ask for a drive on which the formula holds; effort is no part of a claim.
 
-    ``road`` None: the usual road of the formula; ``vehicles``: models by name, "" for all others; ``limits``:
-    other limits than theirs; ``dt`` None: the coarsest step that fits. ``unlike``: drives from which it is to
-    differ; ``trees``: whether trees are wanted that show that there is none. ``apart``: until when boxes stay
-    apart (s), where that is longer than the horizon. ``like``: the motions that it is to have on ``road``, in
-    ``lanes``, where they are given. Effort is no part of a claim.
+    ``road`` None: the usual road of the formula. ``vehicles``: models by name, "" for all others. ``limits``:
+    limits that replace those of the models. ``dt`` None: the coarsest step that fits. ``reach``: the greatest
+    initial distance (m). ``unlike``: drives from which the new one must differ. ``trees``: whether a
+    NONE-WITHIN needs refutation trees. ``apart``: the time up to which boxes stay apart (s), if that is
+    longer than the horizon. ``like``: prescribed motions, on ``road`` and in ``lanes``.
     """
 
     road: Road | None = None
@@ -95,64 +96,73 @@ class Exists:
     like: Drive | None = None
 
 
-class Judgement(Protocol):
-    """What a trace shows, as a definition for ``evidence.codec``."""
+class TraceJudgement(Protocol):
+    """The result of judging a given trace; its class is a definition for ``evidence.codec``."""
 
     @property
     def verdict(self) -> Verdict:
-        """COVERED where it shows something that is asked for, else GAPS."""
+        """COVERED if the trace shows a requested item, else GAPS."""
 
 
-class Judge(Protocol):
-    """What a given trace shows: it can be sent to another process, and says the same each time."""
+class TraceJudge(Protocol):
+    """A judge of one trace: it can be sent to another process, and its judgement is always the same."""
 
     @property
     def kind(self) -> type:
-        """The definition for ``evidence.codec`` of what it says."""
+        """The class of the judgement, for ``evidence.codec``."""
 
-    def __call__(self) -> Judgement:
-        """Return what the trace shows."""
+    @property
+    def relies_on(self) -> Iterable[str]:
+        """The entries of extensions, as ``module:name``, whose code the judgement depends on."""
+
+    def __call__(self) -> TraceJudgement:
+        """Return the judgement of the trace."""
 
 
 @runtime_checkable
-class Confirming(Protocol):
-    """A judge that can tell whether something is so without looking for all that is."""
+class ConfirmingJudge(Protocol):
+    """A judge that can confirm a judgement without searching for all that the trace shows."""
 
     def confirms(self, shows: Any) -> bool:
-        """Return whether all that is said is so."""
+        """Return whether every statement of a judgement is true of the trace."""
 
 
 @dataclass(frozen=True)
 class On:
-    """It is asked what a given trace shows.
+    """The mode of claims about a given trace, answered by ``judge``.
 
-    ``files``: SHA-256 of every file that it is read from; ``asked``: a digest of all else that the answer
-    depends on: formulas with their definitions, values, roles, driver models. ``judge`` answers.
+    ``files``: SHA-256 of every file of the trace. ``asked``: a digest of everything else that the answer
+    depends on: formulas with their definitions, values, roles, driver models.
     """
 
     files: tuple[str, ...]
     asked: str
-    judge: Judge = field(compare=False, repr=False)
+    judge: TraceJudge = field(compare=False, repr=False)
 
 
 class OwnMode(ABC):
-    """How a claim of an extension is asked: a frozen dataclass, of which the digest of the claim is made.
+    """A mode that an extension adds: a frozen dataclass, which the digest of the claim includes.
 
-    ``is_open``: whether the evidence says numbers that the formula leaves open.
+    ``is_open``: whether the evidence determines numbers that the formula leaves open.
     """
 
     is_open: ClassVar[bool] = False
 
+    @property
+    def relies_on(self) -> Iterable[str]:
+        """The entries of other extensions, as ``module:name``, whose code answers depend on."""
+        return ()
+
     @abstractmethod
-    def settle(self, claim: "Claim") -> "Answer":
+    def decide(self, claim: Claim) -> ClaimAnswer:
         """Return the answer to a claim of this mode. Raises ``BudgetExceeded``."""
 
     @abstractmethod
     def verdict_of(self, evidence: object) -> Verdict | None:
-        """Return the verdict that this evidence shows; None where it decides no claim of this mode."""
+        """Return the verdict that this evidence shows; None if it decides no claim of this mode."""
 
-    def is_shown_by(self, claim: "Claim", drive: "DriveFile") -> bool:
-        """Return whether a drive is about a claim of this mode."""
+    def is_shown_by(self, claim: Claim, drive: DriveFile) -> bool:
+        """Return whether a drive file is about a claim of this mode."""
         return claim.read(drive.formula) == claim.formula
 
 
@@ -161,9 +171,9 @@ Mode: TypeAlias = Valid | Exists | On | OwnMode
 
 @dataclass(frozen=True)
 class Claim:
-    """A formula with its free names, how it is asked, and the parameters that occur in it.
+    """A formula with its free names, the mode of the question, and the parameters that occur.
 
-    ``query`` is the formula as it is written, and ``home`` has the definitions that its text is read with.
+    ``query`` is the formula as written, and ``home`` has the definitions that its text is read with.
     """
 
     formula: Formula
@@ -181,47 +191,27 @@ class Claim:
 
     @property
     def values(self) -> Mapping[str, Fraction]:
-        """The values that evidence has to have; none where the claim is about all values."""
+        """The parameter values that evidence must have; empty if the claim is about all values."""
         is_about_all = isinstance(self.mode, Valid) and self.mode.within is None
         return {} if is_about_all else {x.name: x.value for x in self.parameters}
 
     def read(self, text: str) -> Formula:
-        """Return what a text says in the definitions of the claim; its own is not read again.
-
-        Raises ``TextError``.
-        """
+        """Return the formula of a text in the claim's definitions. Raises ``TextError``."""
         return self.formula if text == self.text else read_claim(self.home, text).formula
 
     def digest(self) -> str:
-        """64 hexadecimal digits that no other claim has."""
+        """Return 64 hexadecimal digits that identify the claim."""
         return digest(self)
 
 
 def claim_of(home: Specification, query: Query, mode: Mode, values: Mapping[str, Fraction]) -> Claim:
     """Return the claim of a query that is read in ``home``.
 
-    ``values``: parameters with another value than the declared one (SI).
+    ``values``: parameters whose value differs from the declared one (SI).
     """
-    more = [mode.restricted] if isinstance(mode, Valid) and mode.restricted is not None else []
-    occurring = parameters_in(home.library, (query.formula, *more), values)
+    restricted = [mode.restricted] if isinstance(mode, Valid) and mode.restricted is not None else []
+    occurring = parameters_in(home.library, (query.formula, *restricted), values)
     return Claim(query.formula, query.vehicles, query.lanes, mode, occurring, query, home)
-
-
-def valid_under(
-    specification: Specification,
-    query: Query,
-    assuming: tuple[str, ...] = (),
-    within: Exists | None = None,
-    at: Mapping[str, Fraction] | None = None,
-) -> Claim:
-    """Return the claim that ``query`` holds on all traces under what is assumed, or on drives ``within``.
-
-    ``at``: other values of parameters (SI) than the declared ones, on drives. Raises ``InputError``.
-    """
-    values = tuple(values_said(specification, assuming).items())
-    restricted = under_limits(specification, query, assuming).formula if assuming else None
-    mode = Valid(is_moving(assuming), values, restricted, within, tuple(assuming))
-    return claim_of(specification, query, mode, (at or {}) if within is not None else {})
 
 
 def parameters_in(
@@ -229,22 +219,25 @@ def parameters_in(
     formulas: Iterable[Formula],
     values: Mapping[str, Fraction],
     terms: Iterable[Term] = (),
-    more: Iterable[str] = (),
+    further_names: Iterable[str] = (),
 ) -> tuple[OccurringParameter, ...]:
-    """The parameters that occur in formulas and terms, and ``more``, by name, with their values (SI)."""
-    names = {name for formula in formulas for name in _names_in(formula)} | {*more}
+    """Return the parameters that occur in formulas and terms, and ``further_names``, sorted by name.
+
+    ``values``: parameters whose value differs from the declared one (SI).
+    """
+    names = {name for formula in formulas for name in _names_in(formula)} | {*further_names}
     names |= {leaf.name for term in terms for leaf in leaves(term) if isinstance(leaf, Parameter)}
     return tuple(_occurring(library, name, values) for name in sorted(names))
 
 
 def _names_in(formula: Formula) -> set[str]:
-    """The names of the parameters that occur, as ``parameters_of``, which applied definitions remember."""
+    """Return the names of the parameters that occur; applied definitions have them memoised."""
     names, waiting = set[str](), [formula]
     while waiting:
         current = waiting.pop()
-        inside = () if isinstance(current, Application) else children(current)
-        waiting.extend(inside)
-        if not inside:
+        subformulas = () if isinstance(current, Application) else children(current)
+        waiting.extend(subformulas)
+        if not subformulas:
             names.update(parameters_of(current))
         for interval in intervals(current):
             bounds = (interval.low, *(() if interval.high is None else (interval.high,)))

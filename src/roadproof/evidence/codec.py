@@ -1,61 +1,62 @@
-"""Reads and writes frozen dataclasses as JSON: one definition of an answer gives both, and its JSON Schema.
+"""A codec between frozen dataclasses and JSON: one definition gives writer, strict reader and schema.
 
 A field is declared as ``name: Annotated[type, Doc("one sentence"), …]``. Types are ``str``, ``int``,
-``float``, ``bool``, ``Fraction`` (a rational as text), ``Reason`` (its words), ``Literal``, enumerations of
-texts, ``tuple[T, ...]``, ``Mapping[str, T]``, other dataclasses, unions of these or with ``None``, and
-``object`` (plain JSON). ``tuple[A, B]`` has one item of each type; a rule for the keys of a mapping stands at
-their type. A field with a default may be missing, as in evidence of earlier versions; it is written all the
-same, but where it is marked ``LEFT_OUT``.
+``float``, ``bool``, ``Fraction`` (a rational as text), ``Reason`` (its text), ``Literal``, ``StrEnum``,
+``tuple[T, ...]``, ``Mapping[str, T]``, other dataclasses, unions of these or with ``None``, and ``object``
+(plain JSON). ``tuple[A, B]`` has one item of each type; a rule for the keys of a mapping is an annotation of
+their type. A field with a default may be missing, as in files of earlier versions; it is always written,
+unless it is marked ``LEFT_OUT``.
 """
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from enum import Enum, StrEnum
 from fractions import Fraction
 from functools import cache
 from types import NoneType, UnionType
-from typing import (
-    Annotated,
-    Final,
-    Literal,
-    TypeAlias,
-    TypeVar,
-    Union,
-    cast,
-    get_args,
-    get_origin,
-    get_type_hints,
-)
+from typing import Annotated, Final, Literal, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
 from roadproof.errors import InputError
-from roadproof.evidence.strict import Fields, Json, JsonObject, rational, text
-from roadproof.reasons import Reason, Why
+from roadproof.evidence.json_readers import (
+    SIMPLE,
+    Read,
+    by_length,
+    enumeration,
+    items_of,
+    mapping,
+    one_of,
+    optional,
+    shown,
+)
+from roadproof.evidence.strict import Fields, Json, JsonObject
+from roadproof.reasons import Reason
 from roadproof.runtime.records import dataclass
 
 T = TypeVar("T")
-Read: TypeAlias = Callable[[object, str], object]
 
 
 @dataclass(frozen=True)
 class Doc:
-    """What a field or a type means, in one sentence."""
+    """The meaning of a field or a type, in one sentence."""
 
     text: str
 
 
 @dataclass(frozen=True)
 class Key:
-    """The name of a field in JSON, where Python does not allow it."""
+    """The name of a field in JSON, if it is no name in Python."""
 
     name: str
 
 
 @dataclass(frozen=True)
 class Rule:
-    """What values of a type have to be: texts match ``pattern`` and have ``least`` characters, numbers are at
-    least ``minimum``, lists have ``least`` to ``most`` items; with ``unique`` they have none twice.
-    ``called``: what a text that does not match is not.
+    """The constraints on values of a type.
+
+    Texts match ``pattern`` and have at least ``least`` characters. Numbers are at least ``minimum``. Lists
+    have ``least`` to ``most`` items, without duplicates if ``unique``. ``called``: the noun for texts that
+    match, for messages.
     """
 
     pattern: str = ""
@@ -67,29 +68,29 @@ class Rule:
 
 
 @dataclass(frozen=True)
-class Remedy:
-    """What a message says in addition, where a value of the type is refused."""
+class ErrorHint:
+    """A text that is added to the message if a value of the type is rejected."""
 
     text: str
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A property of a field that is not part of its value."""
+    """A property of a field beside its type, such as ``LEFT_OUT``."""
 
     name: str
 
 
 LEFT_OUT = Mark("left out")
-"""The field is left out where it has its default."""
+"""The field is not written if it has its default."""
 TIMED = Mark("timed")
-"""A duration: answers have it, and files of evidence leave it out, so that two runs write the same files."""
+"""A duration: answers have it; files of evidence leave it out, so two runs write the same files."""
 LACKING = Mark("lacking")
-"""The field is always written, and files that earlier versions shipped lack it."""
+"""The field is always written, but files of earlier versions may lack it."""
 
 
 class Absent(Enum):
-    """What a field has that an answer leaves out, where null says something else."""
+    """The value of a field that an answer leaves out, if null has a meaning of its own."""
 
     FIELD = "absent"
 
@@ -113,35 +114,35 @@ class Field:
 
     @property
     def is_written(self) -> bool:
-        """Whether each answer that is written has it."""
+        """Return whether every written answer has the field."""
         return not self.has(LEFT_OUT) and not self.has(TIMED)
 
     def has(self, mark: Mark) -> bool:
-        """Whether the field has a mark."""
+        """Return whether the field has a mark."""
         return mark in self.notes
 
 
 @cache
 def fields_of(kind: type) -> tuple[Field, ...]:
-    """The fields of a definition, in the order of its JSON."""
+    """Return the fields of a definition, in the order of its JSON."""
     hints = get_type_hints(kind, include_extras=True)
-    found = []
-    for x in fields(kind):
-        notes = notes_of(hints[x.name])
-        key = next((note.name for note in notes if isinstance(note, Key)), x.name)
-        made = x.default if x.default_factory is MISSING else x.default_factory()
-        found.append(Field(x.name, key, hints[x.name], notes, made))
-    return tuple(found)
+    result = []
+    for field in fields(kind):
+        notes = notes_of(hints[field.name])
+        key = next((note.name for note in notes if isinstance(note, Key)), field.name)
+        default = field.default if field.default_factory is MISSING else field.default_factory()
+        result.append(Field(field.name, key, hints[field.name], notes, default))
+    return tuple(result)
 
 
 def notes_of(kind: object) -> tuple[object, ...]:
-    """What the annotation of a type says beside it."""
-    found: tuple[object, ...] = getattr(kind, "__metadata__", ())
-    return found
+    """Return the annotations of a type."""
+    notes: tuple[object, ...] = getattr(kind, "__metadata__", ())
+    return notes
 
 
 def bare(kind: object) -> object:
-    """A type without its annotation."""
+    """Return a type without its annotations."""
     return get_args(kind)[0] if get_origin(kind) is Annotated else kind
 
 
@@ -149,32 +150,32 @@ def bare(kind: object) -> object:
 
 
 def write(value: object, timed: bool = True) -> JsonObject:
-    """Return the JSON object of a value of a definition.
+    """Return the JSON object of an instance of a definition.
 
-    Without ``timed`` it has no field marked ``TIMED``, at any depth, as in files of evidence. Raises
-    ``TypeError`` for a value that is no definition.
+    ``timed`` false: without fields marked ``TIMED``, at any depth, as in files of evidence. Raises
+    ``TypeError`` for a value that is no instance of a definition.
     """
-    found = _plain(value, timed)
-    assert isinstance(found, dict)
-    return found
+    data = _to_json(value, timed)
+    assert isinstance(data, dict)
+    return data
 
 
-def _plain(value: object, timed: bool) -> Json:
+def _to_json(value: object, timed: bool) -> Json:
     match value:
         case StrEnum() | Fraction() | Reason():
             return str(value)
         case None | bool() | int() | float() | str():
             return value
         case Mapping():
-            return {key: _plain(x, timed) for key, x in value.items()}
+            return {key: _to_json(x, timed) for key, x in value.items()}
         case tuple() | list():
-            return [_plain(x, timed) for x in value]
+            return [_to_json(x, timed) for x in value]
     if not is_dataclass(value) or isinstance(value, type):
         raise TypeError(f"{type(value).__name__} has no place in JSON")
-    found = ((x, getattr(value, x.name)) for x in fields_of(type(value)))
+    values = ((x, getattr(value, x.name)) for x in fields_of(type(value)))
     return {
-        x.key: _plain(y, timed)
-        for x, y in found
+        x.key: _to_json(y, timed)
+        for x, y in values
         if (y != x.default or not x.has(LEFT_OUT)) and (timed or not x.has(TIMED))
     }
 
@@ -183,217 +184,129 @@ def _plain(value: object, timed: bool) -> Json:
 
 
 def read(kind: type[T], content: object, where: str) -> T:
-    """The value that JSON data say. Raises ``InputError`` for unknown, missing and mistaken fields."""
+    """Return the value of a type from parsed JSON; ``where``: its place, for messages.
+
+    Raises ``InputError`` for unknown, missing and wrong fields.
+    """
     return cast(T, _reader(kind)(content, where))
 
 
 def _reader(kind: object) -> Read:
-    """The function that reads a type from plain data and the place where they stand."""
+    """Return the function that reads a type from parsed JSON and its place; readers are memoised."""
     if kind not in _READERS:
-        made = _unruled(bare(kind))
+        reader = _plain_reader(bare(kind))
         for note in notes_of(kind):
-            made = _ruled(made, note) if isinstance(note, Rule) else made
-            made = _helped(made, note) if isinstance(note, Remedy) else made
-        _READERS[kind] = made
+            reader = _with_rule(reader, note) if isinstance(note, Rule) else reader
+            reader = _with_hint(reader, note) if isinstance(note, ErrorHint) else reader
+        _READERS[kind] = reader
     return _READERS[kind]
 
 
 _READERS: dict[object, Read] = {}
 
 
-def _helped(inner: Read, remedy: Remedy) -> Read:
-    def make(content: object, where: str) -> object:
+def _with_hint(inner: Read, hint: ErrorHint) -> Read:
+    def _read_value(content: object, where: str) -> object:
         try:
             return inner(content, where)
         except InputError as error:
-            raise InputError(f"{error}; {remedy.text}") from None
+            raise InputError(f"{error}; {hint.text}") from None
 
-    return make
+    return _read_value
 
 
-def _ruled(inner: Read, rule: Rule) -> Read:
+def _with_rule(inner: Read, rule: Rule) -> Read:
     pattern = re.compile(rule.pattern)
 
-    def make(content: object, where: str) -> object:
+    def _read_value(content: object, where: str) -> object:
         if rule.most is not None and isinstance(content, list | dict) and len(content) > rule.most:
-            what = where.rpartition(", ")[2]
-            raise InputError(f"{where}: {len(content)} {what}, at most {rule.most} are read")
-        found = inner(content, where)
-        if isinstance(found, str) and len(found) < rule.least:
+            items = where.rpartition(", ")[2]
+            raise InputError(f"{where}: {len(content)} {items}, at most {rule.most} are read")
+        value = inner(content, where)
+        if isinstance(value, str) and len(value) < rule.least:
             raise InputError(f"{where}: the text is empty")
-        if isinstance(found, str) and not pattern.search(found):
-            raise InputError(f"{where}: {_shown(content)} is no {rule.called or f'text like {rule.pattern}'}")
-        if rule.minimum is not None and isinstance(found, int | float) and found < rule.minimum:
-            raise InputError(f"{where}: {_shown(content)} is below {rule.minimum}")
-        if isinstance(found, tuple | dict) and len(found) < rule.least:
-            raise InputError(f"{where}: it has {len(found)} entries, and needs {rule.least}")
-        if rule.unique and isinstance(found, tuple) and len({*found}) < len(found):
-            raise InputError(f"{where}: {_shown(content)} names something twice")
-        return found
+        if isinstance(value, str) and not pattern.search(value):
+            raise InputError(f"{where}: {shown(content)} is no {rule.called or f'text like {rule.pattern}'}")
+        if rule.minimum is not None and isinstance(value, int | float) and value < rule.minimum:
+            raise InputError(f"{where}: {shown(content)} is below {rule.minimum}")
+        if isinstance(value, tuple | dict) and len(value) < rule.least:
+            raise InputError(f"{where}: it has {len(value)} entries, and needs {rule.least}")
+        if rule.unique and isinstance(value, tuple) and len({*value}) < len(value):
+            raise InputError(f"{where}: {shown(content)} names something twice")
+        return value
 
-    return make
+    return _read_value
 
 
-def _unruled(kind: object) -> Read:
+def _plain_reader(kind: object) -> Read:
     if is_dataclass(kind) and isinstance(kind, type):
         return _object(kind)
-    origin, inside = get_origin(kind), get_args(kind)
+    origin, arguments = get_origin(kind), get_args(kind)
     if origin in (Union, UnionType):
-        several = [x for x in inside if x is not NoneType]
-        if all(get_origin(x) is tuple for x in several[1:]) and len(several) > 1:
-            return _by_length({len(get_args(x)): _reader(x) for x in several})
-        made = _either([bare(x) for x in several]) if len(several) > 1 else _reader(several[0])
-        return _optional(made) if NoneType in inside else made
+        members = [x for x in arguments if x is not NoneType]
+        if all(get_origin(x) is tuple for x in members[1:]) and len(members) > 1:
+            return by_length({len(get_args(x)): _reader(x) for x in members})
+        reader = _either([bare(x) for x in members]) if len(members) > 1 else _reader(members[0])
+        return optional(reader) if NoneType in arguments else reader
     if origin is Literal:
-        return _one_of(inside)
+        return one_of(arguments)
     if origin is tuple:
-        return _items(inside[0]) if Ellipsis in inside else _each(tuple(map(_reader, inside)))
+        return _items(arguments[0]) if Ellipsis in arguments else items_of(tuple(map(_reader, arguments)))
     if origin is not None and issubclass(origin, Mapping):
-        return _named(_reader(inside[0]), _reader(inside[1]))
+        return mapping(_reader(arguments[0]), _reader(arguments[1]))
     if isinstance(kind, type) and issubclass(kind, StrEnum):
-        return _word(kind)
-    return _SIMPLE[kind]
+        return enumeration(kind)
+    return SIMPLE[kind]
 
 
 def _object(kind: type) -> Read:
-    every = fields_of(kind)
-    keys = tuple(x.key for x in every)
+    fields_of_kind = fields_of(kind)
+    keys = tuple(x.key for x in fields_of_kind)
     readers: dict[str, Read] = {}
 
-    def make(content: object, where: str) -> object:
+    def _read_value(content: object, where: str) -> object:
         if not readers:
-            readers.update((x.key, _reader(x.type)) for x in every)
+            readers.update((x.key, _reader(x.type)) for x in fields_of_kind)
         data = Fields(content, where, keys)
         return kind(
             **{
                 x.name: readers[x.key](data.get(x.key), f"{where}, {x.key}")
-                for x in every
+                for x in fields_of_kind
                 if x.is_required or x.key in data.content
             }
         )
 
-    return make
-
-
-def _optional(inner: Read) -> Read:
-    return lambda content, where: None if content is None else inner(content, where)
+    return _read_value
 
 
 def _either(kinds: list[object]) -> Read:
-    """``kinds``: definitions, of which the one is read that has most of the fields that there are."""
+    """Return a reader that chooses the definition with the most fields of the object."""
 
-    def make(content: object, where: str) -> object:
+    def _read_value(content: object, where: str) -> object:
         if not isinstance(content, dict):
-            raise InputError(f"{where}: {_shown(content)} is no object")
+            raise InputError(f"{where}: {shown(content)} is no object")
         best = max(kinds, key=lambda kind: len(content.keys() & {x.key for x in fields_of(kind)}))
         return _reader(best)(content, where)
 
-    return make
-
-
-def _by_length(readers: Mapping[int, Read]) -> Read:
-    """``readers``: one for each number of items."""
-
-    def make(content: object, where: str) -> object:
-        if not isinstance(content, list) or len(content) not in readers:
-            raise InputError(
-                f"{where}: {_shown(content)} is no list of {' or '.join(map(str, readers))} items"
-            )
-        return readers[len(content)](content, where)
-
-    return make
-
-
-def _one_of(words: tuple[object, ...]) -> Read:
-    def make(content: object, where: str) -> object:
-        for word in words:
-            if content == word and type(content) is (str if isinstance(word, str) else type(word)):
-                return word
-        raise InputError(f"{where}: {_shown(content)} is none of {', '.join(map(str, words))}")
-
-    return make
-
-
-def _word(kind: type[StrEnum]) -> Read:
-    def make(content: object, where: str) -> object:
-        try:
-            return kind(text(content, where))
-        except ValueError:
-            raise InputError(f"{where}: there is no {kind.__name__.lower()} {_shown(content)}") from None
-
-    return make
+    return _read_value
 
 
 def _items(kind: object) -> Read:
-    """``kind``: the type of the items; an item of a definition is called by its name."""
+    """Return a reader of lists; messages call an item of a definition by the name of its class."""
     inner = bare(kind)
-    name = _told(inner) if is_dataclass(inner) and isinstance(inner, type) else "item"
+    name = _item_name(inner) if is_dataclass(inner) and isinstance(inner, type) else "item"
     readers: list[Read] = []
 
-    def make(content: object, where: str) -> object:
+    def _read_value(content: object, where: str) -> object:
         if not isinstance(content, list):
-            raise InputError(f"{where}: {_shown(content)} is no list")
+            raise InputError(f"{where}: {shown(content)} is no list")
         if not readers:
             readers.append(_reader(kind))
         return tuple(readers[0](x, f"{where}, {name} {number}") for number, x in enumerate(content, 1))
 
-    return make
+    return _read_value
 
 
-def _told(kind: type) -> str:
-    """``settled claim`` of ClaimAnswer."""
-    return re.sub("(?<=.)(?=[A-Z])", " ", kind.__name__).lower()
-
-
-def _each(readers: tuple[Read, ...]) -> Read:
-    """``readers``: one for each item."""
-
-    def make(content: object, where: str) -> object:
-        if not isinstance(content, list) or len(content) != len(readers):
-            raise InputError(f"{where}: {_shown(content)} is no list of {len(readers)} items")
-        every = zip(readers, content, strict=True)
-        return tuple(inner(x, f"{where}, item {number}") for number, (inner, x) in enumerate(every, 1))
-
-    return make
-
-
-def _named(key: Read, inner: Read) -> Read:
-    def make(content: object, where: str) -> object:
-        if not isinstance(content, dict):
-            raise InputError(f"{where}: {_shown(content)} is no object")
-        return {key(name, where): inner(x, f"{where}.{name}") for name, x in content.items()}
-
-    return make
-
-
-def _flag(content: object, where: str) -> bool:
-    if not isinstance(content, bool):
-        raise InputError(f"{where}: {_shown(content)}; write true or false")
-    return content
-
-
-def _whole(content: object, where: str) -> int:
-    if type(content) is not int:
-        raise InputError(f"{where}: {_shown(content)} is not a whole number")
-    return content
-
-
-def _number(content: object, where: str) -> float:
-    if isinstance(content, bool) or not isinstance(content, int | float):
-        raise InputError(f"{where}: {_shown(content)} is no number")
-    return content
-
-
-def _shown(value: object) -> str:
-    return repr(value)[:60]
-
-
-_SIMPLE: Mapping[object, Read] = {
-    str: text,
-    Reason: lambda content, where: Why.TOLD(text(content, where)),
-    int: _whole,
-    float: _number,
-    bool: _flag,
-    Fraction: rational,
-    object: lambda content, where: content,
-}
+def _item_name(kind: type) -> str:
+    """Return ``"signal value"`` for a class ``SignalValueData``."""
+    return re.sub("(?<=.)(?=[A-Z])", " ", kind.__name__.removesuffix("Data")).lower()

@@ -1,19 +1,19 @@
-"""Traces over points in time on a road of rectangles, which refute claims, as plain data."""
+"""Traces over points in time, on a road of rectangles, that refute claims; and their JSON."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Literal
 
-from roadproof.evidence.answers import drive as kept
+from roadproof.evidence.answers import drive as json_types
 from roadproof.evidence.codec import read, write
-from roadproof.evidence.drive_file import road_of, road_said
+from roadproof.evidence.drive_file import road_data, road_of
 from roadproof.evidence.strict import JsonObject
 from roadproof.runtime.records import dataclass
 from roadproof.world.road import Road
 from roadproof.world.signals import FIXED
 
-Held = Literal["before", "after"]
-_BETWEEN: Mapping[Held, kept.Between] = {
+Interpolation = Literal["before", "after"]
+_BETWEEN: Mapping[Interpolation, json_types.Between] = {
     "before": "the state of the instant before",
     "after": "the state of the instant after",
 }
@@ -22,10 +22,10 @@ NOWHERE = Road("no road", (), frozenset())
 
 @dataclass(frozen=True)
 class Instant:
-    """A state: signals, sizes and variables by name, ``s(SV)``, ``length(SV)``, ``v``, in SI units.
+    """A state at a time (s): signals, sizes and variables, ``s(SV)``, ``length(SV)``, ``v``, in SI units.
 
-    ``atoms`` tells a reader which predicates are true; nothing rests on it. ``after``: the state from just
-    after the instant up to the next, where it is one of its own.
+    ``atoms`` tells a reader which predicates are true; no check uses it. ``after``: the state between this
+    instant and the next, if it differs from ``values``.
     """
 
     time: Fraction
@@ -36,14 +36,14 @@ class Instant:
 
 @dataclass(frozen=True)
 class Loop:
-    """From ``start`` (s) on, each ``period`` seconds are like the ones before."""
+    """The repetition of a trace: from ``start`` (s) on, every ``period`` seconds equal the ones before."""
 
     start: Fraction
     period: Fraction
 
     @property
     def end(self) -> Fraction:
-        """When the first round ends."""
+        """The time at which the first round ends (s)."""
         return self.start + self.period
 
 
@@ -51,30 +51,30 @@ class Loop:
 class Countermodel:
     """A trace on which a claim is false at time 0.
 
-    ``held`` says which of two states fills the time between their instants, where the first has none of its
-    own. ``road`` is None where the claim speaks of none; its lanes and lanelets have the names that are free
-    in the claim. ``loop``: how the trace repeats itself for ever, where it does.
+    ``interpolation``: whether the state ``before`` or ``after`` fills the time between two instants, unless
+    the first has a state ``after`` of its own. ``road``: None if the claim mentions none; its lanes and
+    lanelets have the names that are free in the claim. ``loop``: how the trace repeats for ever, if it does.
     """
 
     instants: tuple[Instant, ...]
     parameters: Mapping[str, Fraction]
-    held: Held
+    interpolation: Interpolation
     road: Road | None = None
     loop: Loop | None = None
 
 
 def trace_data(countermodel: Countermodel) -> JsonObject:
-    """A countermodel: its road, and what holds at each instant; how it repeats itself, where it does."""
+    """Return the JSON of a countermodel."""
     road, loop = countermodel.road, countermodel.loop
     return write(
-        kept.Trace(
+        json_types.RefutingTraceData(
             kind="trace",
-            between=_BETWEEN[countermodel.held],
+            between=_BETWEEN[countermodel.interpolation],
             parameters=_sorted(countermodel.parameters),
-            road=None if road is None else road_said(road),
-            repeats=None if loop is None else kept.Repeats(start=loop.start, period=loop.period),
+            road=None if road is None else road_data(road),
+            repeats=None if loop is None else json_types.RepeatsData(start=loop.start, period=loop.period),
             instants=tuple(
-                kept.Instant(
+                json_types.InstantData(
                     time=x.time,
                     true=tuple(sorted(name for name, true in x.atoms.items() if true)),
                     values=_sorted(x.values),
@@ -91,20 +91,20 @@ def _sorted(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
 
 
 def read_trace(content: object, where: str) -> Countermodel:
-    """The inverse of ``trace_data``. Raises ``InputError``."""
+    """Return the countermodel in parsed JSON, the inverse of ``trace_data``. Raises ``InputError``."""
     place = f"{where}, trace"
-    said = read(kept.Trace, content, place)
+    stored = read(json_types.RefutingTraceData, content, place)
     return Countermodel(
-        tuple(Instant(x.time, x.values, dict.fromkeys(x.true, True), x.after) for x in said.instants),
-        said.parameters,
-        "before" if said.between == "the state of the instant before" else "after",
-        None if said.road is None else road_of(said.road, f"{place}, road"),
-        None if said.repeats is None else Loop(said.repeats.start, said.repeats.period),
+        tuple(Instant(x.time, x.values, dict.fromkeys(x.true, True), x.after) for x in stored.instants),
+        stored.parameters,
+        "before" if stored.between == "the state of the instant before" else "after",
+        None if stored.road is None else road_of(stored.road, f"{place}, road"),
+        None if stored.repeats is None else Loop(stored.repeats.start, stored.repeats.period),
     )
 
 
 def fault_of_states(countermodel: Countermodel) -> str | None:
-    """Why instants, rounds and sizes make no trace, whatever the claim is; None where they make one."""
+    """Return why instants, loop and sizes form no trace, whatever the claim; None if they do."""
     times = [instant.time for instant in countermodel.instants]
     if not times or times[0] != 0 or times != sorted(set(times)):
         return f"its instants are {', '.join(map(str, times))}, but must ascend from 0"
@@ -112,7 +112,7 @@ def fault_of_states(countermodel: Countermodel) -> str | None:
     if loop is not None:
         if loop.start not in times or loop.period <= 0 or loop.end <= times[-1]:
             return f"it repeats itself from {loop.start} s each {loop.period} s, which fits no instants of it"
-        if countermodel.held != "before":
+        if countermodel.interpolation != "before":
             return "it repeats itself, so between instants it must keep the state of the one before"
     sizes = [_sizes(values) for instant in countermodel.instants for values in _states(instant)]
     if any(other != sizes[0] for other in sizes) or any(value <= 0 for value in sizes[0].values()):

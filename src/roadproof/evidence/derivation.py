@@ -1,10 +1,10 @@
 """The ground query of a certificate, derived from the claim and a list of instances alone.
 
-The negated claim is read as a first-order sentence over real time (predicates as functions of
-time). Every existential gets a name of its own; every universal is replaced by the conjunction of
-its listed instances. Both steps only weaken the sentence, so when the result is unsatisfiable,
-the negated claim is, and the claim is valid on all traces (Herbrand). Lemmas are clauses that hold
-at every instant; each has a query of its own, about one instant, that must be unsatisfiable too.
+The negated claim is read as a first-order sentence over real time, with predicates as functions of time.
+Every existential gets a new name; every universal becomes the conjunction of its listed instances. Both steps
+only weaken the sentence. So if the result is unsatisfiable, the negated claim is, and the claim is valid on
+all traces (Herbrand). Lemmas are clauses that hold at every instant; each has a query of its own, about one
+instant, that must be unsatisfiable too.
 """
 
 import re
@@ -13,19 +13,17 @@ from dataclasses import dataclass, field
 from typing import TypeAlias, assert_never
 
 from roadproof.errors import InputError
-from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms, is_rigid
-from roadproof.evidence.cases import split
-from roadproof.evidence.road_axioms import membership, true_of_roads
-from roadproof.evidence.sites import Lemma, Site, prefix_form
+from roadproof.evidence.road_axioms import membership, road_clauses
+from roadproof.evidence.sites import Site, StateLemma, prefix_form
 from roadproof.evidence.times import (
     ZERO,
     Moment,
-    at,
     bound_parameters,
     compared_times,
     constant,
     moment_of,
+    named_moment,
     read_moment,
 )
 from roadproof.logic import formula as f
@@ -34,7 +32,7 @@ from roadproof.logic.rewrite import rename, road_names
 
 _NEW_NAME = re.compile(r"[tM]_*[0-9]{1,9}", re.ASCII)
 
-# What an instance says at a moment: its guards, and the body that they guard.
+# The instance of a universal at a moment: its guards, and the body that they guard.
 Instance: TypeAlias = Callable[[Moment], tuple[list[str], str]]
 
 
@@ -43,24 +41,34 @@ def derive_query(
     atoms: Atoms,
     instances: Mapping[Site, Sequence[str]],
     names: Mapping[Site, str],
-    lemmas: Sequence[Lemma],
+    lemmas: Sequence[StateLemma],
     bounds: Mapping[str, str],
     lanes: Collection[str] = (),
 ) -> str:
-    """SMT-LIB script that is unsatisfiable only if ``claim``, abstracted by ``atoms``, is valid at time 0.
+    """Return an SMT-LIB script that denies the abstracted claim at time 0.
 
-    ``instances`` lists for each universal the moments (or lanes) to try; ``names`` calls the
-    existentials that instances speak of; ``lanes`` are the claim's own. Raises ``InputError`` where an
-    instance or a name belongs to no quantifier that the claim meets, and where a name is not new.
+    If it is unsatisfiable and the lemmas hold, the claim is valid. Quantifiers are those of the negated
+    claim.
+
+    Args:
+        claim: the claim, abstracted by ``atoms``.
+        instances: the moments or lanes to instantiate each universal with; without any, it becomes true.
+        names: new names (t1, M1) of the existentials that instances mention; others are named here.
+        lemmas: clauses taken as true, with the moments at which they are added.
+        bounds: the declared bound of each parameter against 0 (``>``, ``>=`` or "").
+        lanes: the free lanes of the claim.
+
+    Raises:
+        InputError: an instance or a name has no quantifier, a name is not new, a moment or lane is unknown.
     """
-    derivation = _start(claim, atoms, instances, names, bounds, lanes)
+    derivation = _new_derivation(claim, atoms, instances, names, bounds, lanes)
     goal = derivation.truth(claim, False, ZERO)
     clauses = [
         _join("or", [derivation.literal(name, positive, moment) for name, positive in lemma.literals])
         for lemma in lemmas
         for moment in map(read_moment, lemma.moments)
     ]
-    derivation.refuse_strangers()
+    derivation.require_known_sites()
     return "\n".join(
         [
             "(set-logic QF_UFLRA)",
@@ -82,14 +90,14 @@ def met_sites(
     bounds: Mapping[str, str],
     lanes: Collection[str],
 ) -> tuple[dict[Site, tuple[str, ...]], dict[Site, str]]:
-    """The entries of ``instances``, and of ``names``, whose quantifier is met when only these are made."""
-    derivation = _start(claim, atoms, instances, names, bounds, lanes)
+    """Return the entries of ``instances`` and ``names`` whose quantifiers the instantiated claim has."""
+    derivation = _new_derivation(claim, atoms, instances, names, bounds, lanes)
     derivation.truth(claim, False, ZERO)
-    met = {site: tuple(texts) for site, texts in instances.items() if site in derivation.instanced}
-    return met, {site: name for site, name in names.items() if site in derivation.named}
+    met = {site: tuple(texts) for site, texts in instances.items() if site in derivation.met_universals}
+    return met, {site: name for site, name in names.items() if site in derivation.met_existentials}
 
 
-def _start(
+def _new_derivation(
     claim: Formula,
     atoms: Atoms,
     instances: Mapping[Site, Sequence[str]],
@@ -97,20 +105,20 @@ def _start(
     bounds: Mapping[str, str],
     lanes: Collection[str],
 ) -> "_Derivation":
-    """Refuses names that are not new: an existential that shares one would say too much."""
+    """Return a derivation. Raises ``InputError`` for names that are not new: sharing one would be unsound."""
     taken = {*lanes, *road_names(claim), *bounds}
     for name in names.values():
         if name in taken or not _NEW_NAME.fullmatch(name):
             raise InputError(f"'{name[:60]}' is no new name: times are called t1, t2, …, lanes M1, M2, …")
     if len({*names.values()}) != len(names):
         raise InputError("two existentials of the certificate have the same name")
-    elements = frozenset({*lanes, *road_names(claim), *names.values()})
+    lanes_and_names = frozenset({*lanes, *road_names(claim), *names.values()})
     prefixes = free_prefix("u", taken), free_prefix("q", taken)
-    return _Derivation(atoms, instances, names, elements, bound_parameters(claim), *prefixes)
+    return _Derivation(atoms, instances, names, lanes_and_names, bound_parameters(claim), *prefixes)
 
 
 def free_prefix(prefix: str, taken: Collection[str]) -> str:
-    """``prefix``, longer by underscores until no name in ``taken`` begins with it."""
+    """Return ``prefix``, extended by underscores until no name in ``taken`` begins with it."""
     while any(name.startswith(prefix) for name in taken):
         prefix += "_"
     return prefix
@@ -119,10 +127,13 @@ def free_prefix(prefix: str, taken: Collection[str]) -> str:
 def derive_lemma_queries(
     atoms: Atoms, literals: Sequence[tuple[str, bool]], bounds: Mapping[str, str]
 ) -> list[str]:
-    """SMT-LIB scripts about one instant, all unsatisfiable only if the clause always holds.
+    """Return SMT-LIB scripts about one instant that are all unsatisfiable only if the clause always holds.
 
-    There is one for each way in which the maxima and minima of the clause can fall.
+    Each script is one case of the maxima and minima in the clause.
     """
+    from roadproof.evidence import state  # here: few proofs have lemmas
+    from roadproof.evidence.cases import split
+
     for name, _ in literals:
         if not f.is_state(atoms.meaning(name)):
             raise InputError(f"'{name[:60]}' speaks of several instants, and a lemma of one")
@@ -145,30 +156,31 @@ def derive_lemma_queries(
 
 @dataclass
 class _Derivation:
-    """``instanced`` and ``named`` are the universals and the existentials met so far.
+    """The state of a derivation, with the universals and existentials met so far.
 
-    ``timing`` are the parameters in interval bounds: comparisons of these are read as what they are.
+    ``timing_parameters``: the parameters in interval bounds; comparisons among them are encoded as
+    arithmetic, not as atoms.
     """
 
     known: Atoms
     instances: Mapping[Site, Sequence[str]]
     names: Mapping[Site, str]
     elements: frozenset[str]
-    timing: frozenset[str]
-    unnamed: str
-    defining: str
+    timing_parameters: frozenset[str]
+    fresh_prefix: str
+    definition_prefix: str
     definitions: list[str] = field(default_factory=list)
     defined: dict[tuple[Formula, bool, Moment], str] = field(default_factory=dict)
     atoms: set[str] = field(default_factory=set)
     facts: set[tuple[f.Domain, str]] = field(default_factory=set)
     times: list[str] = field(default_factory=list)
     moments: set[str] = field(default_factory=set)
-    instanced: set[Site] = field(default_factory=set)
-    named: set[Site] = field(default_factory=set)
-    fresh: int = 0
+    met_universals: set[Site] = field(default_factory=set)
+    met_existentials: set[Site] = field(default_factory=set)
+    fresh_count: int = 0
 
     def truth(self, formula: Formula, positive: bool, moment: Moment) -> str:
-        """What follows from ``formula`` (or its negation) being true at ``moment``."""
+        """Return an SMT-LIB formula that follows from the truth, or falsity, of the formula at a moment."""
         match formula:
             case f.Truth(value):
                 return "true" if value == positive else "false"
@@ -187,8 +199,9 @@ class _Derivation:
                 assert_never(formula)
 
     def literal(self, name: str, positive: bool, moment: Moment) -> str:
+        """Return the SMT-LIB literal of an atom at a moment."""
         meaning = self.known.meaning(name)
-        times = compared_times(meaning, self.timing)
+        times = compared_times(meaning, self.timing_parameters)
         if times is not None:
             left, op, right = times
             self.moments |= {part for side in (left, right) for part, _ in side.parts}
@@ -207,7 +220,7 @@ class _Derivation:
         key = (formula, positive, moment)
         if key not in self.defined:
             body = self._expand(formula, positive, moment)
-            self.defined[key] = f"{self.defining}{len(self.definitions) + 1}"
+            self.defined[key] = f"{self.definition_prefix}{len(self.definitions) + 1}"
             self.definitions.append(f"(define-fun {self.defined[key]} () Bool {body})")
         return self.defined[key]
 
@@ -248,7 +261,7 @@ class _Derivation:
     def _until_fails(
         self, formula: f.Until, site: Site, moment: Moment, when: Moment
     ) -> tuple[list[str], str]:
-        """¬(φ U ψ): at each moment of the window ψ fails, or φ has failed before within it."""
+        """Encode ¬(φ U ψ): whenever ψ is true in the window, φ was false before within the window."""
         failed = self._existential(Site(site.formula, False, site.moment, str(when)))
         earlier = _join(
             "and",
@@ -278,7 +291,7 @@ class _Derivation:
         if isinstance(formula, f.Some) == positive:
             element = self._name(site)
             return _join("and", [self._fact(domain, element), at_element(element)])
-        self.instanced.add(site)
+        self.met_universals.add(site)
         listed = self.instances.get(site, ())
         for element in listed:
             if element not in self.elements:
@@ -292,19 +305,19 @@ class _Derivation:
         return f"|{membership(domain, element)}|"
 
     def _name(self, site: Site) -> str:
-        self.named.add(site)
+        self.met_existentials.add(site)
         if site in self.names:
             return self.names[site]
-        self.fresh += 1
-        return f"{self.unnamed}{self.fresh}_"
+        self.fresh_count += 1
+        return f"{self.fresh_prefix}{self.fresh_count}_"
 
     def _existential(self, site: Site) -> Moment:
         name = self._name(site)
         self.times.append(name)
-        return at(name)
+        return named_moment(name)
 
     def _universal(self, site: Site, instance: Instance) -> str:
-        self.instanced.add(site)
+        self.met_universals.add(site)
         clauses: list[str] = []
         for moment in map(read_moment, self.instances.get(site, ())):
             guard, body = instance(moment)
@@ -325,30 +338,31 @@ class _Derivation:
         self.moments |= {name for m in (left, right) for name, _ in m.parts}
         return f"(< {left.smt()} {right.smt()})"
 
-    def refuse_strangers(self) -> None:
-        """Every listed instance and name must belong to a quantifier that was met."""
-        for what, sites, met in (
-            ("an instance", self.instances, self.instanced),
-            ("a name", self.names, self.named),
+    def require_known_sites(self) -> None:
+        """Raise ``InputError`` if a listed instance or name belongs to no quantifier that was met."""
+        for kind, sites, met in (
+            ("an instance", self.instances, self.met_universals),
+            ("a name", self.names, self.met_existentials),
         ):
             for site in sites:
                 if site not in met:
                     raise InputError(
-                        f"{what} at moment {site.moment[:60]} belongs to no quantifier of the claim: "
+                        f"{kind} at moment {site.moment[:60]} belongs to no quantifier of the claim: "
                         f"{site.formula[:120]}"
                     )
 
     def declarations(self, bounds: Mapping[str, str]) -> list[str]:
+        """Return the declarations of the script; raises ``InputError`` for a moment with an unknown name."""
         parameters = sorted(self.moments & set(bounds))
-        strangers = self.moments - set(bounds) - set(self.times)
-        if strangers:
-            raise InputError(f"the moment '{min(strangers)}' is no time of the certificate and no parameter")
+        unknown = self.moments - set(bounds) - set(self.times)
+        if unknown:
+            raise InputError(f"the moment '{min(unknown)}' is no time of the certificate and no parameter")
         return [
             *(f"(declare-const {constant(name)} Real)" for name in parameters),
             *(f"(assert ({bounds[name]} {constant(name)} 0.0))" for name in parameters if bounds[name]),
             *(f"(declare-const {name} Real)" for name in dict.fromkeys(self.times)),
             *(f"(declare-const |{name}| Bool)" for name in sorted(membership(*x) for x in self.facts)),
-            *(f"(assert {axiom})" for axiom in sorted(true_of_roads(self.facts))),
+            *(f"(assert {axiom})" for axiom in sorted(road_clauses(self.facts))),
             *(f"(declare-fun |{name}| (Real) Bool)" for name in sorted(self.atoms)),
         ]
 

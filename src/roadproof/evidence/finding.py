@@ -1,20 +1,23 @@
-"""What comes out where evidence is checked."""
+"""Findings: the results of checking evidence, their summary and exit code."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import KernelWord, Reason
 from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 from roadproof.evidence.subject import DriverSide, SubjectKind, TestOutcome
-from roadproof.reasons import NO_REASON, Why
+from roadproof.reasons import NO_REASON, ReasonKind
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 
 
 class Acceptance(StrEnum):
-    """ACCEPTED: it shows what it says. UNDECIDED: the solver did not decide. UNREADABLE: nothing can be said,
-    since it is damaged, or speaks of definitions that are not at hand. FAULT: ours."""
+    """The outcome of a check.
+
+    ACCEPTED: the evidence shows its verdict. UNDECIDED: the solver gave no answer. UNREADABLE: the file is
+    damaged, or uses definitions that are not loaded. FAULT: an error in roadproof.
+    """
 
     ACCEPTED = "accepted"
     REJECTED = "rejected"
@@ -27,7 +30,7 @@ class Acceptance(StrEnum):
         return _EXIT[self]
 
 
-_EXIT = {
+_EXIT: Mapping[Acceptance, ExitCode] = {
     Acceptance.ACCEPTED: ExitCode.AS_EXPECTED,
     Acceptance.REJECTED: ExitCode.UNEXPECTED,
     Acceptance.UNDECIDED: ExitCode.UNKNOWN,
@@ -37,16 +40,46 @@ _EXIT = {
 
 
 Kind: TypeAlias = Literal["certificate", "drive", "trace", "boundary", "index", "journal", "test", "none", ""]
-STALE: Final = (Why.TEST_GONE, Why.TEST_UNKNOWN, Why.FILE_GONE, Why.FILE_CHANGED)
-"""Why an answer is about tests that are others now."""
-NO_EVIDENCE: Final = "none"  # the kind of an answer that promises nothing, or nothing that is for all time
+STALE: Final = (ReasonKind.TEST_GONE, ReasonKind.TEST_UNKNOWN, ReasonKind.FILE_GONE, ReasonKind.FILE_CHANGED)
+"""The reasons that say that the tests of an answer have changed since."""
+NO_EVIDENCE: Final = "none"  # the kind of an answer without evidence that holds for all time
 
 ARITHMETIC: Final = "exact integer arithmetic"
 
 
+class RemarkKind(StrEnum):
+    """The kind of limit that a remark of a check states."""
+
+    PARAMETERS = "parameters"
+    COLLISIONS = "collisions"
+
+
+class LimitRemark(str):
+    """A remark of a check that states a limit, as its words; code decides by its ``kind``.
+
+    ``limit``: the words of the limit alone.
+    """
+
+    kind: RemarkKind
+    limit: str
+
+    def __new__(cls, kind: RemarkKind, text: str, limit: str | None = None) -> "LimitRemark":
+        made = super().__new__(cls, text)
+        made.kind, made.limit = kind, text if limit is None else limit
+        return made
+
+    def __reduce__(self) -> "tuple[type[LimitRemark], tuple[RemarkKind, str, str]]":
+        return LimitRemark, (self.kind, str(self), self.limit)
+
+
+def parameter_remark(other: Sequence[str]) -> LimitRemark:
+    """Return the remark on the values of parameters; ``other``: those that are not the declared ones."""
+    return LimitRemark(RemarkKind.PARAMETERS, f"with {', '.join(other)}" if other else "declared parameters")
+
+
 @dataclass(frozen=True)
 class Finding:
-    """One claim of a file or of an index; the evidence itself gives verdict, label and claim."""
+    """The result of checking one claim of a file or index; verdict, label and claim are the evidence's."""
 
     where: Annotated[str, Doc("The file, or the entry of an index.")]
     kind: Annotated[
@@ -81,7 +114,7 @@ class Finding:
     ] = ""
 
     def __str__(self) -> str:
-        """The finding in a line; a reason may have more of them."""
+        """Return the finding as one line; a reason may add lines."""
         if self.outcome is not Acceptance.ACCEPTED:
             named = f"{self.label}  " if self.label else ""
             return _printable(f"{self.outcome:<9} {named}{self.where}: {self.reason}", "\n")
@@ -95,14 +128,14 @@ class Finding:
         return _printable(line + (f"  [{'; '.join(notes)}]" if notes else ""))
 
 
-def _printable(text: str, besides: str = "") -> str:
-    """A text whose control characters, such as those in names of a file, are written as escapes."""
-    return "".join(x if x.isprintable() or x in besides else ascii(x)[1:-1] for x in text)
+def _printable(text: str, allowed: str = "") -> str:
+    """Return the text with control characters, such as those in names of a file, escaped."""
+    return "".join(x if x.isprintable() or x in allowed else ascii(x)[1:-1] for x in text)
 
 
 @dataclass(frozen=True)
-class OtherVerdict:
-    """What another than solver and judge says: ``word`` in its own word."""
+class SecondOpinion:
+    """The verdict of a checker other than solver and judge, such as Coq; ``word``: its own word for it."""
 
     outcome: Acceptance
     reason: Reason
@@ -112,32 +145,35 @@ class OtherVerdict:
 
 
 def exit_code(findings: Iterable[Finding], strict: bool = False) -> ExitCode:
-    """The gravest of all findings; UNKNOWN where none is grave, but no evidence at all was accepted.
+    """Return the gravest exit code of all findings; UNKNOWN if none is grave but no evidence was accepted.
 
-    ``strict``: UNKNOWN also where an answer has no evidence, such as UNKNOWN or NONE-WITHIN.
+    ``strict``: UNKNOWN also if an answer has no evidence, such as UNKNOWN or NONE-WITHIN.
     """
-    found = list(findings)
-    gravest = max((x.outcome.exit_code for x in found), default=ExitCode.AS_EXPECTED)
-    without = [x for x in found if x.kind == NO_EVIDENCE]
-    if gravest is ExitCode.AS_EXPECTED and (len(without) == len(found) or (strict and without)):
+    listed = list(findings)
+    gravest = max((x.outcome.exit_code for x in listed), default=ExitCode.AS_EXPECTED)
+    no_evidence = [x for x in listed if x.kind == NO_EVIDENCE]
+    if gravest is ExitCode.AS_EXPECTED and (len(no_evidence) == len(listed) or (strict and no_evidence)):
         return ExitCode.UNKNOWN
     return gravest
 
 
 def summary(findings: Sequence[Finding], solver: str) -> str:
-    """How many claims came out how, in a line."""
-    counted = [finding for finding in findings if finding.kind != NO_EVIDENCE]
-    accepted = sum(finding.outcome is Acceptance.ACCEPTED for finding in counted)
-    line = f"{accepted} of {len(counted)} accepted by {checkers(counted, solver)}"
+    """Return a line with the number of claims of each outcome."""
+    with_evidence = [finding for finding in findings if finding.kind != NO_EVIDENCE]
+    accepted = sum(finding.outcome is Acceptance.ACCEPTED for finding in with_evidence)
+    line = f"{accepted} of {len(with_evidence)} accepted by {checkers(with_evidence, solver)}"
     for outcome in (Acceptance.REJECTED, Acceptance.UNDECIDED, Acceptance.UNREADABLE, Acceptance.FAULT):
-        count = sum(finding.outcome is outcome for finding in counted)
+        count = sum(finding.outcome is outcome for finding in with_evidence)
         line += f", {count} {outcome}" if count else ""
-    without = len(findings) - len(counted)
-    return line + (f"; {without} without evidence" if without else "")
+    without_evidence = len(findings) - len(with_evidence)
+    return line + (f"; {without_evidence} without evidence" if without_evidence else "")
 
 
 def checkers(findings: Sequence[Finding], solver: str) -> str:
-    """What checked these, in words: trees of a NONE-WITHIN are added up, and a kernel checks them too."""
+    """Return the names of the checkers of these findings, such as ``z3 and the exact judge``.
+
+    Exact arithmetic checks the trees of a NONE-WITHIN, and a kernel may check them too.
+    """
     trees = [x for x in findings if x.verdict == Verdict.NONE_WITHIN]
     names = [solver] if len(trees) < len(findings) or any(x.kernel for x in trees) or not findings else []
     names += ["the exact judge"] if len(trees) < len(findings) or not findings else []

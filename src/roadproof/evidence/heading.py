@@ -1,4 +1,4 @@
-"""How answers begin as plain data: what kind of answer, which version gave it, what the definitions said."""
+"""The heading of every answer: schema, version of roadproof, and fingerprint of the definitions."""
 
 import re
 from typing import Any
@@ -12,21 +12,23 @@ _FINGERPRINT = re.compile("[0-9a-f]{16}")
 
 
 def heading(schema: str, library: Library) -> dict[str, Any]:
-    """The first fields of an answer; ``library`` has the definitions that it was given with.
+    """Return the first fields of an answer that was made with a library.
 
-    ``signals`` tells what is supposed of own signals, where there are some that are not derived.
+    ``signals`` describes the custom signals that are not derived, if there are any.
     """
-    free = {"signals": library.freedom} if library.freedom else {}
-    return {"schema": schema, "roadproof": VERSION, "library": library.fingerprint, **free}
+    signals = {"signals": library.freedom} if library.freedom else {}
+    return {"schema": schema, "roadproof": VERSION, "library": library.fingerprint, **signals}
 
 
 def library_of(data: Fields) -> str:
     """Return the fingerprint of the definitions of an index.
 
-    Raises ``InputError`` where that, or the version, is missing or none.
+    Raises ``InputError`` if the fingerprint or the version is missing or malformed.
     """
     data.text("roadproof")
-    found = data.text("library")
-    if not _FINGERPRINT.fullmatch(found):
-        raise InputError(f"{data.where}: library='{found[:60]}' is no fingerprint of 16 digits from 0 to f")
-    return found
+    fingerprint = data.text("library")
+    if not _FINGERPRINT.fullmatch(fingerprint):
+        raise InputError(
+            f"{data.where}: library='{fingerprint[:60]}' is no fingerprint of 16 digits from 0 to f"
+        )
+    return fingerprint

@@ -1,4 +1,4 @@
-"""What an answer can rest on."""
+"""The kinds of evidence that an answer can rest on."""
 
 from typing import TypeAlias
 

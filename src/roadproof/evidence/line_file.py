@@ -1,24 +1,24 @@
-"""The reference line of a road in drive files."""
+"""The JSON form of a road's reference line in drive files."""
 
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 
 from roadproof.errors import InputError
-from roadproof.evidence.answers import drive as kept
+from roadproof.evidence.answers import drive as json_types
 from roadproof.world.curves import Coefficients, Cubic, Curve, Line, Polyline, Spiral
 from roadproof.world.reference_line import Part, ReferenceLine
 
 
-def line_said(line: ReferenceLine | None) -> tuple[kept.Curve, ...]:
-    """A line as files hold it; nothing where there is none."""
-    return () if line is None else tuple(map(_part_said, line.parts))
+def line_data(line: ReferenceLine) -> tuple[json_types.CurveData, ...]:
+    """Return the JSON form of a reference line."""
+    return tuple(map(_part_data, line.parts))
 
 
-def _part_said(part: Part) -> kept.Curve:
+def _part_data(part: Part) -> json_types.CurveData:
     curve = part.curve
     cubic, spiral = isinstance(curve, Cubic), isinstance(curve, Spiral)
-    return kept.Curve(
+    return json_types.CurveData(
         kind="cubic" if cubic else "spiral" if spiral else "line" if isinstance(curve, Line) else "polyline",
         **{name: getattr(part, name) for name in ("s", "length", "x", "y", "heading", "backward", "offset")},
         curvature=(curve.begin, curve.end) if isinstance(curve, Spiral) else None,
@@ -29,26 +29,24 @@ def _part_said(part: Part) -> kept.Curve:
     )
 
 
-def line_of(said: Sequence[kept.Curve], where: str) -> ReferenceLine | None:
-    """The inverse of ``line_said``. Raises ``InputError``."""
-    if not said:
-        return None
-    parts = tuple(_part(x, f"{where}, line {k}") for k, x in enumerate(said, 1))
+def line_of(stored: Sequence[json_types.CurveData], where: str) -> ReferenceLine:
+    """Return the reference line of its JSON form, the inverse of ``line_data``. Raises ``InputError``."""
+    parts = tuple(_part(x, f"{where}, line {k}") for k, x in enumerate(stored, 1))
     for k, (before, after) in enumerate(pairwise(parts), 2):
         if after.s < before.s:
             raise InputError(f"{where}, line {k}: s={after.s}: parts follow each other in s")
     return ReferenceLine(parts)
 
 
-def _part(said: kept.Curve, where: str) -> Part:
-    if said.length <= 0:
-        raise InputError(f"{where}: length={said.length}: a part is longer than 0 m")
+def _part(stored: json_types.CurveData, where: str) -> Part:
+    if stored.length <= 0:
+        raise InputError(f"{where}: length={stored.length}: a part is longer than 0 m")
     try:
         part = Part(
-            *(said.s, said.length, said.x, said.y, said.heading),
-            _curve(said, where),
-            said.backward,
-            said.offset,
+            *(stored.s, stored.length, stored.x, stored.y, stored.heading),
+            _curve(stored, where),
+            stored.backward,
+            stored.offset,
         )
         list(part.bends())
         part.pose(float(part.s))
@@ -57,20 +55,20 @@ def _part(said: kept.Curve, where: str) -> Part:
     return part
 
 
-def _curve(said: kept.Curve, where: str) -> Curve:
-    match said.kind:
+def _curve(stored: json_types.CurveData, where: str) -> Curve:
+    match stored.kind:
         case "line":
             return Line()
         case "spiral":
-            if said.curvature is None:
+            if stored.curvature is None:
                 raise InputError(f"{where}: curvature is missing; a spiral has it")
-            return Spiral(*said.curvature)
+            return Spiral(*stored.curvature)
         case "cubic":
-            return Cubic(_four(said.u, f"{where}, u"), _four(said.v, f"{where}, v"), said.last)
+            return Cubic(_four(stored.u, f"{where}, u"), _four(stored.v, f"{where}, v"), stored.last)
         case "polyline":
-            if len(said.points) < 2 or any(said.points[0]):
+            if len(stored.points) < 2 or any(stored.points[0]):
                 raise InputError(f"{where}: points: two or more are needed, the first [0, 0]")
-            return Polyline(said.points)
+            return Polyline(stored.points)
 
 
 def _four(numbers: tuple[Fraction, ...], where: str) -> Coefficients:

@@ -1,8 +1,8 @@
-"""When a formula is true on a trace that repeats itself for ever, exactly, from one round of it.
+"""The exact truth of formulas on traces that repeat for ever, computed from the first round alone.
 
-A truth set of such a trace is known by what it is before the end of the first round. Each operator looks
-ahead into as many rounds as can matter: a witness that comes later than the end of the first round, and
-a whole round later than it is asked for, also came one round earlier.
+The truth set of such a trace is determined by its part before the end of the first round. Each operator looks
+ahead into as many rounds as can matter. A witness that comes after the first round, and a whole round later
+than required, also came one round earlier.
 """
 
 from collections.abc import Mapping
@@ -17,32 +17,32 @@ from roadproof.logic.formula import Formula
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact import truth as sets
 from roadproof.semantics.exact.algebraic import moved
-from roadproof.semantics.exact.exact import Judge, seconds
-from roadproof.semantics.exact.signals import AbstractSignals, Courses
+from roadproof.semantics.exact.judging import Judge, interval_seconds
+from roadproof.semantics.exact.signals import AbstractSignals, TermPieces
 
 MOST_ROUNDS = 2000
 Window: TypeAlias = tuple[Fraction, Fraction | None]
 
 
-def judge_periodic(formula: Formula, given: Mapping[Formula, sets.TruthSet], loop: Loop) -> sets.TruthSet:
-    """When a bound formula is true before the end of the first round of ``loop``.
+def judge_periodic(
+    formula: Formula, comparisons: Mapping[Formula, sets.TruthSet], loop: Loop
+) -> sets.TruthSet:
+    """Return the set of times before the end of the first round at which a bound formula is true.
 
-    ``given``: the truth of its comparisons there. Raises ``InputError`` for one that is not given, and for
-    intervals that reach over too many rounds.
+    ``comparisons``: their truth sets there. Raises ``InputError`` for a missing comparison, and for intervals
+    that reach over too many rounds.
     """
-    return PeriodicJudge(Courses(AbstractSignals({}, {})), given, loop=loop).visit(formula)
+    return PeriodicJudge(TermPieces(AbstractSignals({}, {})), comparisons, loop=loop).visit(formula)
 
 
 @dataclass(frozen=True, kw_only=True)
 class PeriodicJudge(Judge):
-    """A judge who says of each part when it is true before the end of the first round.
-
-    Where there is no ``loop``: when it is true at all.
-    """
+    """A judge of each part up to the end of the first round; without ``loop``, an ordinary judge."""
 
     loop: Loop | None
 
     def visit(self, formula: Formula) -> sets.TruthSet:
+        """Return the truth set of a formula, up to the end of the first round if there is a loop."""
         if self.loop is None:
             return Judge.visit(self, formula)
         if formula not in self.truths:
@@ -55,16 +55,16 @@ class PeriodicJudge(Judge):
             return Judge._visit(self, formula)
         match formula:
             case f.Eventually(window, body):
-                low, high = clipped(seconds(window), loop)
-                return sets.eventually(low, high, ahead(self.visit(body), low, loop))
+                low, high = clip(interval_seconds(window), loop)
+                return sets.eventually(low, high, unroll_ahead(self.visit(body), low, loop))
             case f.Always(window, body):
-                low, high = clipped(seconds(window), loop)
+                low, high = clip(interval_seconds(window), loop)
                 failing = first_round(sets.complement(self.visit(body)), loop)
-                return sets.complement(sets.eventually(low, high, ahead(failing, low, loop)))
+                return sets.complement(sets.eventually(low, high, unroll_ahead(failing, low, loop)))
             case f.Until(left, window, right):
-                low, high = clipped(seconds(window), loop)
-                held, reached = (ahead(self.visit(x), low, loop) for x in (left, right))
-                return sets.until(held, low, high, reached)
+                low, high = clip(interval_seconds(window), loop)
+                left_holds, reached = (unroll_ahead(self.visit(x), low, loop) for x in (left, right))
+                return sets.until(left_holds, low, high, reached)
             case f.Truth() | f.Not() | f.And() | f.Or() | f.Application():
                 return Judge._visit(self, formula)
             case f.Compare() | f.Occupies() | f.Some() | f.Every():
@@ -74,29 +74,29 @@ class PeriodicJudge(Judge):
 
 
 def first_round(truth: sets.TruthSet, loop: Loop) -> sets.TruthSet:
-    """The part of a truth set before the end of the first round."""
+    """Return the part of a truth set before the end of the first round."""
     return sets.intersection([truth, sets.interval(Fraction(0), loop.end, "[)")])
 
 
-def ahead(truth: sets.TruthSet, low: Fraction, loop: Loop) -> sets.TruthSet:
-    """A truth set of the first round in as many rounds as matter to intervals from ``low`` on."""
-    return unrolled(truth, loop, low + 2 * loop.end + loop.period)
+def unroll_ahead(truth: sets.TruthSet, low: Fraction, loop: Loop) -> sets.TruthSet:
+    """Return a truth set of the first round, unrolled as far as intervals that begin at ``low`` can reach."""
+    return unroll(truth, loop, low + 2 * loop.end + loop.period)
 
 
-def unrolled(truth: sets.TruthSet, loop: Loop, horizon: Fraction) -> sets.TruthSet:
-    """A truth set of the first round in all rounds up to ``horizon`` (s), and false later."""
+def unroll(truth: sets.TruthSet, loop: Loop, horizon: Fraction) -> sets.TruthSet:
+    """Return a truth set of the first round, repeated up to ``horizon`` (s), and false later."""
     rounds = max(1, ceil((horizon - loop.start) / loop.period))
     if rounds > MOST_ROUNDS:
         raise InputError(f"an interval reaches over {rounds} rounds of the trace; at most {MOST_ROUNDS}")
     parts = [first_round(truth, loop)]
-    again = sets.intersection([truth, sets.interval(loop.start, loop.end, "[)")])
+    repeated = sets.intersection([truth, sets.interval(loop.start, loop.end, "[)")])
     for k in range(1, rounds):
-        later = (sets.Cut(moved(cut.point, k * loop.period), cut.after) for cut in again.cuts)
+        later = (sets.Cut(moved(cut.point, k * loop.period), cut.after) for cut in repeated.cuts)
         parts.append(sets.TruthSet(tuple(later)))
     return sets.union(parts)
 
 
-def clipped(window: Window, loop: Loop) -> tuple[Fraction, Fraction]:
-    """An interval without what lies so late in it that it came before."""
+def clip(window: Window, loop: Loop) -> tuple[Fraction, Fraction]:
+    """Return the interval without its part so late that the same states also occur earlier in it."""
     low, high = window
     return low, low + loop.end if high is None else min(high, low + loop.end)

@@ -1,10 +1,9 @@
-"""Programs with disjunctions, and trees that show that a program has no solution.
+"""Disjunctive programs, and refutation trees that show that a program has no solution.
 
-A program is an exact encoding of a question: columns between bounds, products of two columns, equations,
+A program encodes a question exactly: columns between bounds, products of two columns, equations,
 inequalities, and a circuit of conjunctions and disjunctions over inequalities. All numbers are integers.
-``refutes`` adds up a tree in exact arithmetic: at each leaf, multiples of what is known there give a sum
-that no value of the columns within their bounds satisfies. ``proofs/kernel/Programs.v`` has the same
-checker, proved right.
+``refutes`` checks a tree in exact arithmetic: at each leaf, a weighted sum of known facts holds for no values
+of the columns within their bounds. ``proofs/kernel/Programs.v`` has the same checker, proved correct.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,12 +12,12 @@ from typing import Literal, TypeAlias, assert_never
 
 from roadproof.runtime.records import dataclass
 
-Kind: TypeAlias = Literal["equal", "above", "node", "corner", "tangent"]
+FactKind: TypeAlias = Literal["equal", "above", "node", "corner", "tangent"]
 
 
 @dataclass(frozen=True)
 class Linear:
-    """Σ coefficient · column + constant; as a condition it is above 0 where ``strict``, else at least 0."""
+    """The sum Σ coefficient · column + constant; a condition that it is > 0 if ``strict``, else >= 0."""
 
     terms: tuple[tuple[int, int], ...]
     constant: int
@@ -26,27 +25,28 @@ class Linear:
 
 
 @dataclass(frozen=True)
-class Every:
-    """A node that is true where all of these nodes are."""
+class Conjunction:
+    """A node that is true if all of its parts are; ``parts`` are numbers of nodes."""
 
     parts: tuple[int, ...]
 
 
 @dataclass(frozen=True)
-class Either:
-    """A node that is true where one of these nodes is."""
+class Disjunction:
+    """A node that is true if one of its parts is; ``parts`` are numbers of nodes."""
 
     parts: tuple[int, ...]
 
 
-Node: TypeAlias = Linear | Every | Either
+Node: TypeAlias = Linear | Conjunction | Disjunction
 
 
 @dataclass(frozen=True)
-class Program:
-    """``box``: integer bounds of each column times ``scale``. Columns after these are ``products`` of two.
+class DisjunctiveProgram:
+    """A program; ``box``: integer bounds of each column times ``scale``.
 
-    ``equal`` are 0 and ``above`` at least 0. Nodes follow their parts; the last one is the condition.
+    The columns after these are ``products`` of two. Terms in ``equal`` are 0, those in ``above`` at least 0.
+    ``nodes`` follow their parts; the last one is the condition.
     """
 
     scale: int
@@ -59,35 +59,36 @@ class Program:
 
 @dataclass(frozen=True)
 class Fact:
-    """An equation, an inequality or a known linear node of the program by its number, or of a product:
+    """A fact that a leaf may use, with its number: an equation, an inequality, a known linear node, or a
+    product.
 
-    the ``corner`` (end of the first factor) (end of the second), 0 for low and 1 for high, or of a square
-    the ``tangent`` at a value, times the scale.
+    For a product, ``corner`` has an end of each factor, 0 for low and 1 for high. For a square, ``tangent``
+    has the value (times the scale) at which the tangent touches.
     """
 
-    kind: Kind
+    kind: FactKind
     number: int
     ends: tuple[int, int] = (0, 0)
 
 
 @dataclass(frozen=True)
-class Sum:
-    """Multiples of facts whose sum contradicts the box; those of equations may be negative."""
+class WeightedSum:
+    """A leaf: multiples of facts whose sum contradicts the box; only equations may have negative weights."""
 
     weights: tuple[tuple[Fact, int], ...]
 
 
 @dataclass(frozen=True)
-class Cases:
-    """A tree for each part of a known disjunction."""
+class CaseSplit:
+    """An inner node with a tree for each part of a known disjunction."""
 
     node: int
     trees: "tuple[Tree, ...]"
 
 
 @dataclass(frozen=True)
-class Cut:
-    """A tree for values of a column up to ``at`` (times the scale), and one for those from there on."""
+class ColumnSplit:
+    """An inner node with a tree for values of a column up to ``at`` (times the scale), and one from it on."""
 
     column: int
     at: int
@@ -95,67 +96,67 @@ class Cut:
     high: "Tree"
 
 
-Tree: TypeAlias = Sum | Cases | Cut
+Tree: TypeAlias = WeightedSum | CaseSplit | ColumnSplit
 Box: TypeAlias = Sequence[tuple[int, int]]
 
 
 @dataclass(frozen=True)
 class KnownFacts:
-    """What is known at a place of a tree: the box, and which nodes are true."""
+    """The knowledge at a node of a tree: the box, and which nodes of the program are true."""
 
-    program: Program
+    program: DisjunctiveProgram
     box: Box
     nodes: frozenset[int] = field(default_factory=frozenset)
 
     def also(self, node: int) -> "KnownFacts":
-        """With one more node that is true, and the parts of conjunctions."""
-        found, waiting = set(self.nodes), [node]
+        """Return the facts with one more true node, and with the parts of conjunctions."""
+        true_nodes, waiting = set(self.nodes), [node]
         while waiting:
             number = waiting.pop()
-            if number in found:
+            if number in true_nodes:
                 continue
-            found.add(number)
+            true_nodes.add(number)
             content = self.program.nodes[number]
-            if isinstance(content, Every):
+            if isinstance(content, Conjunction):
                 waiting.extend(content.parts)
-        return KnownFacts(self.program, self.box, frozenset(found))
+        return KnownFacts(self.program, self.box, frozenset(true_nodes))
 
     def within(self, column: int, ends: tuple[int, int]) -> "KnownFacts":
-        """With other bounds of a column."""
+        """Return the facts with other bounds of a column."""
         box = list(self.box)
         box[column] = ends
         return KnownFacts(self.program, box, self.nodes)
 
 
-def refutes(program: Program, tree: Tree) -> bool:
-    """Whether ``tree`` shows that ``program`` has no solution."""
+def refutes(program: DisjunctiveProgram, tree: Tree) -> bool:
+    """Return whether a tree shows that a program has no solution."""
     known = KnownFacts(program, program.box).also(len(program.nodes) - 1)
     waiting: list[tuple[KnownFacts, Tree]] = [(known, tree)]
     while waiting:
-        here, found = waiting.pop()
-        match found:
-            case Sum(weights):
-                if not is_absurd(here, weights):
+        here, branch = waiting.pop()
+        match branch:
+            case WeightedSum(weights):
+                if not is_contradiction(here, weights):
                     return False
-            case Cases(number, trees):
+            case CaseSplit(number, trees):
                 node = program.nodes[number] if 0 <= number < len(program.nodes) else None
-                if not isinstance(node, Either) or number not in here.nodes:
+                if not isinstance(node, Disjunction) or number not in here.nodes:
                     return False
                 if len(trees) != len(node.parts):
                     return False
                 waiting += [(here.also(part), one) for part, one in zip(node.parts, trees, strict=True)]
-            case Cut(column, at, low, high):
+            case ColumnSplit(column, at, low, high):
                 if not 0 <= column < len(here.box):
                     return False
                 begin, end = here.box[column]
                 waiting += [(here.within(column, (begin, at)), low), (here.within(column, (at, end)), high)]
             case _:
-                assert_never(found)
+                assert_never(branch)
     return True
 
 
-def is_absurd(known: KnownFacts, weights: Iterable[tuple[Fact, int]]) -> bool:
-    """Whether the sum of these multiples of facts holds nowhere in the box."""
+def is_contradiction(known: KnownFacts, weights: Iterable[tuple[Fact, int]]) -> bool:
+    """Return whether the sum of these multiples of facts holds nowhere in the box."""
     factors: dict[int, int] = {}
     constant, strict = 0, False
     for fact, weight in weights:
@@ -171,7 +172,7 @@ def is_absurd(known: KnownFacts, weights: Iterable[tuple[Fact, int]]) -> bool:
 
 
 def _greatest(known: KnownFacts, factors: Mapping[int, int]) -> int:
-    """The greatest value of Σ factor · column in the box, times the square of the scale."""
+    """Return the greatest value of Σ factor · column in the box, times the square of the scale."""
     program, total = known.program, 0
     for column, factor in factors.items():
         if column < len(known.box):
@@ -183,7 +184,7 @@ def _greatest(known: KnownFacts, factors: Mapping[int, int]) -> int:
 
 
 def linear_of(known: KnownFacts, fact: Fact) -> Linear | None:
-    """What a fact says to be at least 0, None where it is none."""
+    """Return the linear term that a fact states to be at least 0; None if it is no fact here."""
     program, number = known.program, fact.number
     if number < 0:
         return None
@@ -195,13 +196,13 @@ def linear_of(known: KnownFacts, fact: Fact) -> Linear | None:
             node = program.nodes[number] if number in known.nodes else None
             return node if isinstance(node, Linear) else None
         case "corner" | "tangent":
-            return _of_product(known, fact) if number < len(program.products) else None
+            return _product_fact(known, fact) if number < len(program.products) else None
         case _:
             assert_never(fact.kind)
 
 
-def _of_product(known: KnownFacts, fact: Fact) -> Linear | None:
-    """(x - a)·(y - b), with the sign that makes it at least 0, times the square of the scale."""
+def _product_fact(known: KnownFacts, fact: Fact) -> Linear | None:
+    """Return (x - a)·(y - b), times the square of the scale, with the sign that makes it at least 0."""
     one, other = known.program.products[fact.number]
     scale, column = known.program.scale, len(known.box) + fact.number
     if fact.kind == "tangent":

@@ -1,7 +1,7 @@
-"""Refutations as plain data: a trace over points in time on a road of rectangles, or a drive.
+"""The judge of countermodels: traces over points in time on a road of rectangles.
 
-What a trace refutes is judged here, from its numbers and its road alone: each comparison at each
-instant, lanes and lanelets as for drives, and time by the exact judge.
+It uses the numbers and the road of the trace alone. It evaluates each comparison at each instant; lanes,
+lanelets and time are treated as for drives, by the exact judge.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,9 +19,9 @@ from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.node import once
+from roadproof.logic.node import memoised
 from roadproof.logic.rewrite import leaves_of, map_terms, without_names
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.reasons import NO_REASON, Reason, ReasonKind
 from roadproof.semantics.exact import TruthSet, judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.exact.truth import from_switches
@@ -29,9 +29,9 @@ from roadproof.world.lanelet_rules import check_lanelets, shared_boundaries
 
 
 def fault_of(countermodel: Countermodel, claim: Formula, bounds: Mapping[str, str]) -> str | None:
-    """Why ``countermodel`` does not refute ``claim``, judged; None where it does.
+    """Return why a countermodel does not refute a claim, after judging it; None if it does.
 
-    ``bounds`` gives the declared bound of each parameter against 0 (``>``, ``>=`` or '').
+    ``bounds`` gives the declared bound of each parameter against 0 (``>``, ``>=`` or "").
     """
     for name, value in countermodel.parameters.items():
         if (bounds.get(name) and value < 0) or (bounds.get(name) == ">" and value == 0):
@@ -52,24 +52,26 @@ def fault_of(countermodel: Countermodel, claim: Formula, bounds: Mapping[str, st
 
 
 def when_true(formula: Formula, trace: Countermodel) -> TruthSet:
-    """When ``formula`` is true on ``trace``.
+    """Return the set of times at which a formula is true on a trace.
 
-    Raises ``InputError`` and ``UsageError`` where the trace lacks a lane, a value or a signal of it.
+    Raises ``InputError`` and ``UsageError`` if the trace lacks a lane, a value or a signal of the formula.
     """
-    bare = without_empty_windows(bind(numbered(formula, trace), trace.road or NOWHERE, {}, trace.parameters))
+    bare = without_empty_windows(
+        bind(with_trace_values(formula, trace), trace.road or NOWHERE, {}, trace.parameters)
+    )
     times = [instant.time for instant in trace.instants]
-    given: dict[Formula, TruthSet] = {}
+    comparisons: dict[Formula, TruthSet] = {}
     for part in f.subformulas(bare):
         if isinstance(part, f.Compare):
             truths = [_holds(part, instant.values) for instant in trace.instants]
-            given[part] = _spread(times, truths, _after(part, truths, trace))
+            comparisons[part] = _truth_set(times, truths, _after(part, truths, trace))
     if trace.loop is not None:
-        return judge_periodic(bare, given, trace.loop)
-    return judge(bare, None, given).truth(bare)
+        return judge_periodic(bare, comparisons, trace.loop)
+    return judge(bare, None, comparisons).truth(bare)
 
 
-def numbered(formula: Formula, trace: Countermodel) -> Formula:
-    """A formula without names of definitions, and with the values of its variables."""
+def with_trace_values(formula: Formula, trace: Countermodel) -> Formula:
+    """Return the formula with definitions expanded and variables replaced by their values."""
     first = trace.instants[0].values
     return map_terms(without_names(formula), lambda term: _with_variables(term, first))
 
@@ -84,19 +86,19 @@ def _with_variables(term: t.Term, values: Mapping[str, Fraction]) -> t.Term:
 
 
 def _holds(part: f.Compare, values: Mapping[str, Fraction]) -> bool:
-    """Whether a comparison holds in a state."""
-    names = sorted(dict.fromkeys(_named(part).values()))
+    """Return whether a comparison holds in a state."""
+    names = sorted(dict.fromkeys(_state_names(part).values()))
     return _holds_at(part, tuple((name, values[name]) for name in names if name in values))
 
 
 @lru_cache(maxsize=10_000)
-def _holds_at(part: f.Compare, known: tuple[tuple[str, Fraction], ...]) -> bool:
-    """Whether a comparison holds where what it speaks of has these values, evaluated exactly."""
-    named, values = _named(part), dict(known)
-    signals: dict[t.Signal | t.Own, tuple[tuple[Fraction, Fraction], ...]] = {
+def _holds_at(part: f.Compare, values_by_name: tuple[tuple[str, Fraction], ...]) -> bool:
+    """Return whether a comparison holds for these values of its signals and sizes, exactly."""
+    named, values = _state_names(part), dict(values_by_name)
+    signals: dict[t.Signal | t.CustomSignal, tuple[tuple[Fraction, Fraction], ...]] = {
         leaf: ((Fraction(0), values[name]),)
         for leaf, name in named.items()
-        if isinstance(leaf, t.Signal | t.Own) and name in values
+        if isinstance(leaf, t.Signal | t.CustomSignal) and name in values
     }
     sizes = {
         leaf: values[name] for leaf, name in named.items() if isinstance(leaf, t.Size) and name in values
@@ -104,39 +106,42 @@ def _holds_at(part: f.Compare, known: tuple[tuple[str, Fraction], ...]) -> bool:
     return judge(part, AbstractSignals(signals, sizes)).holds
 
 
-@once
-def _named(part: f.Compare) -> Mapping[t.Leaf, str]:
-    """What a state calls the signals and sizes of a comparison."""
-    found = {*leaves_of(part)}
+@memoised
+def _state_names(part: f.Compare) -> Mapping[t.Leaf, str]:
+    """Return the names of the signals and sizes of a comparison, as states have them."""
+    leaves = {*leaves_of(part)}
     named: dict[t.Leaf, str] = {
-        leaf: f"{leaf.name}({leaf.vehicle})" for leaf in found if isinstance(leaf, t.Signal | t.Size)
+        leaf: f"{leaf.name}({leaf.vehicle})" for leaf in leaves if isinstance(leaf, t.Signal | t.Size)
     }
-    return named | {leaf: leaf.told for leaf in found if isinstance(leaf, t.Own)}
+    return named | {leaf: leaf.text for leaf in leaves if isinstance(leaf, t.CustomSignal)}
 
 
 def _after(part: f.Compare, truths: Sequence[bool], trace: Countermodel) -> list[bool]:
-    """Whether a comparison holds after each instant, up to the next."""
-    held = truths if trace.held == "before" else [*truths[1:], truths[-1]]
+    """Return whether a comparison holds after each instant, up to the next."""
+    unchanged = truths if trace.interpolation == "before" else [*truths[1:], truths[-1]]
     return [
         usual if instant.after is None else _holds(part, instant.after)
-        for instant, usual in zip(trace.instants, held, strict=True)
+        for instant, usual in zip(trace.instants, unchanged, strict=True)
     ]
 
 
-def _spread(times: Sequence[Fraction], values: Sequence[bool], after: Sequence[bool]) -> TruthSet:
-    """Truth at instants and after them."""
+def _truth_set(times: Sequence[Fraction], values: Sequence[bool], after: Sequence[bool]) -> TruthSet:
+    """Return the truth set from truth at instants and between them."""
     return from_switches(zip(times, values, after, strict=True))
 
 
 def judge_trace(
-    content: object, specification: Specification, claim: str, where: str, said: Sequence[str] = ()
+    content: object, specification: Specification, claim: str, where: str, assuming: Sequence[str] = ()
 ) -> tuple[Acceptance, Reason]:
-    """Whether a trace refutes a claim under what is ``said``, judged; and why where it does not."""
+    """Return whether a trace refutes a claim under assumptions, and the reason if not.
+
+    ``content``: the parsed JSON of the trace; ``assuming``: the assumptions as text.
+    """
     try:
-        query = under_limits(specification, read_claim(specification, claim), said)
+        query = under_limits(specification, read_claim(specification, claim), assuming)
         trace = read_trace(content, where)
         values_with(specification.library, trace.parameters)
         fault = fault_of(trace, query.formula, specification.library.bounds)
     except RoadproofError as error:
-        return Acceptance.UNREADABLE, Why.TOLD(error)
-    return (Acceptance.REJECTED, Why.NOT_REFUTED(fault)) if fault else (Acceptance.ACCEPTED, NO_REASON)
+        return Acceptance.UNREADABLE, ReasonKind.TOLD(error)
+    return (Acceptance.REJECTED, ReasonKind.NOT_REFUTED(fault)) if fault else (Acceptance.ACCEPTED, NO_REASON)

@@ -1,7 +1,7 @@
-"""The axioms of roads, stated once: in words, in Coq, and as SMT-LIB for memberships of lanelets.
+"""The axioms of roads in one table: as text, in Coq, and as SMT-LIB about memberships of lanelets.
 
-docs/explanation/formal.md has the words, proofs/kernel/Meaning.v the Coq text, and the provers use the
-SMT-LIB. A test compares all of them, and the roads of files, countermodels and searches, with this table.
+docs/explanation/formal.md has the text, proofs/kernel/Meaning.v the Coq form, and the provers use the
+SMT-LIB. A test compares these, and the roads of files, countermodels and searches, with this table.
 """
 
 from collections.abc import Callable, Collection, Iterator
@@ -16,7 +16,7 @@ Membership: TypeAlias = tuple[f.Domain, str]
 
 
 def membership(domain: f.Domain, element: str) -> str:
-    """A name for the fact that ``element`` belongs to ``domain``, which time does not change."""
+    """Return the name of the fact that ``element`` belongs to ``domain``; time does not change it."""
     return f"{element} in {domain.kind}({domain.of})"
 
 
@@ -25,32 +25,32 @@ def _fact(domain: f.Domain, element: str) -> str:
 
 
 def _no_instances(_: Collection[Membership]) -> Iterator[str]:
-    """An axiom that is no clause about memberships."""
+    """Yield nothing: the axiom is no clause about memberships."""
     yield from ()
 
 
-def _own_lane(known: Collection[Membership]) -> Iterator[str]:
-    for domain, element in known:
+def _own_lane(memberships: Collection[Membership]) -> Iterator[str]:
+    for domain, element in memberships:
         if domain.kind == "lanelets" and domain.of == element:
             yield _fact(domain, element)
 
 
-def _not_beside_itself(known: Collection[Membership]) -> Iterator[str]:
-    for domain, element in known:
+def _not_beside_itself(memberships: Collection[Membership]) -> Iterator[str]:
+    for domain, element in memberships:
         if domain.kind == "adjacent" and domain.of == element:
             yield f"(not {_fact(domain, element)})"
 
 
-def _beside_both_ways(known: Collection[Membership]) -> Iterator[str]:
-    for domain, element in known:
+def _beside_both_ways(memberships: Collection[Membership]) -> Iterator[str]:
+    for domain, element in memberships:
         converse = f.Domain("adjacent", element), domain.of
-        if domain.kind == "adjacent" and domain.of < element and converse in known:
+        if domain.kind == "adjacent" and domain.of < element and converse in memberships:
             yield f"(= {_fact(domain, element)} {_fact(*converse)})"
 
 
-def _one_zone(known: Collection[Membership]) -> Iterator[str]:
+def _one_zone(memberships: Collection[Membership]) -> Iterator[str]:
     zones: dict[str, list[str]] = {}
-    for domain, element in known:
+    for domain, element in memberships:
         if domain.kind == "zone":
             zones.setdefault(element, []).append(_fact(domain, element))
     for facts in map(sorted, zones.values()):
@@ -103,10 +103,10 @@ AXIOMS = (
 )
 
 
-def true_of_roads(memberships: Collection[Membership]) -> list[str]:
-    """What holds of ``memberships`` on every road, as SMT-LIB: their names are ``membership(…)``.
+def road_clauses(memberships: Collection[Membership]) -> list[str]:
+    """Return the SMT-LIB clauses about ``memberships`` that hold on every road.
 
-    A name stands for a lanelet and for the lane that it belongs to.
+    Their names are ``membership(…)``; a name may denote a lanelet and also the lane that it belongs to.
     """
     known = dict.fromkeys(memberships)
     return [clause for axiom in AXIOMS for clause in axiom.instances(known)]

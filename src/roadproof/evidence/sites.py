@@ -1,4 +1,4 @@
-"""Where a proof meets quantifiers, and the clauses that it uses, as certificates name them."""
+"""The quantifiers and lemmas of a proof, in the form in which certificates name them."""
 
 from dataclasses import dataclass
 from typing import assert_never
@@ -6,16 +6,16 @@ from typing import assert_never
 from roadproof.evidence.times import moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.node import once
+from roadproof.logic.node import memoised
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 
 
 @dataclass(frozen=True)
 class Site:
-    """A quantifier met at a moment: ``formula`` in prefix form, its polarity, when it is read.
+    """A quantifier at a moment: ``formula`` in prefix form, its polarity, and the moment of evaluation.
 
-    ``instance`` is set where the quantifier stands under an instance of a negated until.
+    ``instance`` is set if the quantifier is inside an instance of a negated until.
     """
 
     formula: str
@@ -25,16 +25,16 @@ class Site:
 
 
 @dataclass(frozen=True)
-class Lemma:
-    """A clause over atoms that holds at every instant; ``moments`` are where the proof uses it."""
+class StateLemma:
+    """A clause over atoms that holds at every instant; ``moments``: where the proof uses it."""
 
     literals: tuple[tuple[str, bool], ...]
     moments: tuple[str, ...]
 
 
-@once
+@memoised
 def prefix_form(formula: Formula) -> str:
-    """An abstracted formula as text in which nothing is ambiguous."""
+    """Return an abstracted formula as unambiguous text in prefix form."""
     match formula:
         case f.Truth(value):
             return str(value).lower()

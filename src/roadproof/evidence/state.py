@@ -1,33 +1,33 @@
-"""What a state predicate says about one instant, as SMT-LIB: signals are real constants."""
+"""The SMT-LIB form of a state predicate about one instant: signals are real constants."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import assert_never
 
-from roadproof.evidence.times import constant, rational
+from roadproof.evidence.times import constant, smt_rational
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.node import once
+from roadproof.logic.node import memoised
 from roadproof.logic.rewrite import leaves_of, terms_of
 from roadproof.logic.terms import Term
 
 
-def symbol(leaf: t.Parameter | t.Variable | t.Signal | t.Size | t.Own) -> str:
-    """The SMT-LIB constant for a leaf of a term."""
+def symbol(leaf: t.Parameter | t.Variable | t.Signal | t.Size | t.CustomSignal) -> str:
+    """Return the SMT-LIB constant of a leaf of a term."""
     match leaf:
         case t.Parameter(name, _) | t.Variable(name, _):
             return constant(name)
-        case t.Signal(name, vehicle) | t.Size(name, vehicle) | t.Own(name, vehicle):
+        case t.Signal(name, vehicle) | t.Size(name, vehicle) | t.CustomSignal(name, vehicle):
             return f"|{name}({vehicle})|"
 
 
 def term(expression: Term) -> str:
-    """A term without ``Inverse`` as an SMT-LIB term of sort Real."""
+    """Return a term without ``Inverse`` as an SMT-LIB term of sort Real."""
     match expression:
         case t.Number(value, _):
-            return rational(value)
-        case t.Parameter() | t.Variable() | t.Signal() | t.Size() | t.Own():
+            return smt_rational(value)
+        case t.Parameter() | t.Variable() | t.Signal() | t.Size() | t.CustomSignal():
             return symbol(expression)
         case t.Sum(terms):
             return f"(+ {' '.join(map(term, terms))})"
@@ -48,22 +48,22 @@ def term(expression: Term) -> str:
 
 
 def _quotient(quotient: t.Quotient) -> str:
-    """A quotient; one by a symbolic divisor p is a constant q with q·p = numerator.
+    """Return a quotient; with a symbolic divisor p it is a constant q with q·p = numerator.
 
-    A power is divided through its base, x²/p = x·(x/p), so that equal quotients share their constant:
-    nonlinear solvers then eliminate x, where they would be lost among divisions.
+    A power is divided through its base, x²/p = x·(x/p), to let equal quotients share their constant.
+    Nonlinear solvers can then eliminate x; with divisions they often fail.
     """
-    numerator, scale, divisor = _parted(quotient)
+    numerator, scale, divisor = _split_divisor(quotient)
     if divisor is None:
-        return f"(/ {term(numerator)} {rational(scale)})"
+        return f"(/ {term(numerator)} {smt_rational(scale)})"
     if isinstance(numerator, t.Power) and numerator.exponent > 1:
         rest = t.Power(numerator.base, numerator.exponent - 1)
-        return f"(/ (* {term(rest)} {_ratio(numerator.base, divisor)}) {rational(scale)})"
-    return f"(/ {_ratio(numerator, divisor)} {rational(scale)})"
+        return f"(/ (* {term(rest)} {_ratio(numerator.base, divisor)}) {smt_rational(scale)})"
+    return f"(/ {_ratio(numerator, divisor)} {smt_rational(scale)})"
 
 
-def _parted(quotient: t.Quotient) -> tuple[Term, Fraction, Term | None]:
-    """Numerator, constant part of the divisor, and its symbolic part (None where there is none)."""
+def _split_divisor(quotient: t.Quotient) -> tuple[Term, Fraction, Term | None]:
+    """Return the numerator, the divisor's constant part, and its symbolic part (None if it has none)."""
     factors = quotient.denominator.factors if isinstance(quotient.denominator, t.Product) else None
     scale, symbolic = Fraction(1), []
     for factor in factors or (quotient.denominator,):
@@ -78,22 +78,22 @@ def _parted(quotient: t.Quotient) -> tuple[Term, Fraction, Term | None]:
 
 
 def _ratio(numerator: Term, divisor: Term) -> str:
-    """The constant that stands for numerator / divisor."""
+    """Return the constant that stands for numerator / divisor."""
     shown = f"{term(numerator)} / {term(divisor)}".replace("|", "'")
     return f"|{shown}|"
 
 
-@once
+@memoised
 def _ratios(expression: Term) -> tuple[tuple[Term, Term], ...]:
-    """Numerator and divisor of every constant that ``term`` introduces, inner ones first."""
-    found = [ratio for child in t.children(expression) for ratio in _ratios(child)]
+    """Return numerator and divisor of every constant that ``term`` introduces, inner ones first."""
+    pairs = [ratio for child in t.children(expression) for ratio in _ratios(child)]
     if isinstance(expression, t.Quotient):
-        numerator, _, divisor = _parted(expression)
+        numerator, _, divisor = _split_divisor(expression)
         if divisor is not None:
             powered = isinstance(numerator, t.Power) and numerator.exponent > 1
             divided = numerator.base if powered and isinstance(numerator, t.Power) else numerator
-            found.append((divided, divisor))
-    return tuple(found)
+            pairs.append((divided, divisor))
+    return tuple(pairs)
 
 
 def _extremum(terms: tuple[Term, ...], op: str) -> str:
@@ -104,9 +104,9 @@ def _extremum(terms: tuple[Term, ...], op: str) -> str:
 
 
 def comparison(compare: f.Compare) -> str:
-    """A comparison as an SMT-LIB formula; 1/0 is ∞, which is above every number and equals itself.
+    """Return a comparison as an SMT-LIB formula; 1/0 is ∞, which is above every number and equals itself.
 
-    Inverses are compared by the signs of what they invert, without a division.
+    Inverses are compared by the signs of their arguments, without a division.
     """
     left, right, op = compare.left, compare.right, compare.op
     if op in ("<", "<="):
@@ -118,33 +118,33 @@ def comparison(compare: f.Compare) -> str:
             return _above_finite(term(x), term(right), op)
         case _, t.Inverse(y):
             return _below_inverse(term(left), term(y), op)
-        case _:
+        case _:  # open: pairs of terms without an inverse
             return f"({op} {term(left)} {term(right)})"
 
 
 def _inverses(x: str, y: str, op: str) -> str:
-    """1/x op 1/y, where op is > or >=."""
+    """Return 1/x op 1/y, where op is > or >=."""
     infinite = "true" if op == ">=" else f"(not (= {y} 0.0))"
-    apart = f"(and (> {x} 0.0) (< {y} 0.0))"
-    alike = f"(or (and (> {x} 0.0) (> {y} 0.0)) (and (< {x} 0.0) (< {y} 0.0)))"
-    return f"(ite (= {x} 0.0) {infinite} (or {apart} (and {alike} ({op} {y} {x}))))"
+    opposite = f"(and (> {x} 0.0) (< {y} 0.0))"
+    same_sign = f"(or (and (> {x} 0.0) (> {y} 0.0)) (and (< {x} 0.0) (< {y} 0.0)))"
+    return f"(ite (= {x} 0.0) {infinite} (or {opposite} (and {same_sign} ({op} {y} {x}))))"
 
 
 def _above_finite(x: str, number: str, op: str) -> str:
-    """1/x op number, where op is > or >=."""
+    """Return 1/x op number, where op is > or >=."""
     positive, negative = f"({op} 1.0 (* {number} {x}))", f"({op} (* {number} {x}) 1.0)"
     return f"(or (= {x} 0.0) (and (> {x} 0.0) {positive}) (and (< {x} 0.0) {negative}))"
 
 
 def _below_inverse(number: str, y: str, op: str) -> str:
-    """number op 1/y, where op is > or >=."""
+    """Return number op 1/y, where op is > or >=."""
     positive, negative = f"({op} (* {number} {y}) 1.0)", f"({op} 1.0 (* {number} {y}))"
     return f"(or (and (> {y} 0.0) {positive}) (and (< {y} 0.0) {negative}))"
 
 
-@once
+@memoised
 def state(formula: Formula) -> str:
-    """A state formula as SMT-LIB; ``occ`` and quantifiers over the road stay opaque constants."""
+    """Return a state formula as SMT-LIB; ``occ`` and quantifiers over the road are opaque constants."""
     match formula:
         case f.Truth(value):
             return "true" if value else "false"
@@ -167,7 +167,7 @@ def state(formula: Formula) -> str:
 
 
 def opaque(formula: f.Occupies | f.Some | f.Every) -> str:
-    """One Boolean constant for what only the road decides; alike in structure, alike in name."""
+    """Return the SMT Boolean of a lane predicate; equal predicates get the same name."""
     match formula:
         case f.Occupies(vehicle, lanelet):
             return f"|occ({vehicle}, {lanelet})|"
@@ -178,12 +178,12 @@ def opaque(formula: f.Occupies | f.Some | f.Every) -> str:
 
 
 def declarations(formulas: Iterable[Formula], bounds: Mapping[str, str]) -> list[str]:
-    """Declarations for all that ``formulas`` speak of, with what is always known of it.
+    """Return the declarations of all symbols in ``formulas``, with the bounds that always hold.
 
-    ``bounds`` gives the declared bound of a parameter against 0 (``>``, ``>=`` or '').
+    ``bounds`` gives the declared bound of each parameter against 0 (``>``, ``>=`` or "").
     """
     reals: dict[str, str] = {}
-    own: dict[t.Own, None] = {}
+    custom_signals: dict[t.CustomSignal, None] = {}
     booleans: set[str] = set()
     ratios: dict[tuple[Term, Term], None] = {}
     for formula in formulas:
@@ -199,31 +199,32 @@ def declarations(formulas: Iterable[Formula], bounds: Mapping[str, str]) -> list
                     reals[symbol(leaf)] = ">"
                 case t.Signal() | t.Variable():
                     reals[symbol(leaf)] = ""
-                case t.Own():
+                case t.CustomSignal():
                     reals[symbol(leaf)] = ""
-                    own[leaf] = None
+                    custom_signals[leaf] = None
         booleans |= opaque_symbols(formula)
     lines = [f"(declare-const {name} Real)" for name in sorted(_ratio(*r) for r in ratios)]
     solved, equations = _solve(list(ratios))
     lines += [f"(declare-const {name} Real)" for name in sorted(reals) if name not in solved]
     lines += [f"(define-fun {name} () Real {value})" for name, value in solved.items()]
     lines += [f"(assert ({bound} {name} 0.0))" for name, bound in sorted(reals.items()) if bound]
-    lines += [bound for leaf in sorted(own, key=symbol) for bound in _within(leaf)]
+    lines += [bound for leaf in sorted(custom_signals, key=symbol) for bound in _within(leaf)]
     lines += equations
     return lines + [f"(declare-const {name} Bool)" for name in sorted(booleans)]
 
 
-def _within(own: t.Own) -> Iterator[str]:
-    """The declared bounds of an own signal, which it keeps at every instant."""
-    for op, bound in (("<=", own.low), (">=", own.high)):
+def _within(signal: t.CustomSignal) -> Iterator[str]:
+    """Yield the declared bounds of a custom signal, which hold at every instant."""
+    for op, bound in (("<=", signal.low), (">=", signal.high)):
         if bound is not None:
-            yield f"(assert ({op} {rational(bound)} {symbol(own)}))"
+            yield f"(assert ({op} {smt_rational(bound)} {symbol(signal)}))"
 
 
 def _solve(ratios: list[tuple[Term, Term]]) -> tuple[dict[str, str], list[str]]:
-    """The equations q·divisor = numerator, solved for a variable of the numerator where that can be.
+    """Solve the equations q·divisor = numerator for a variable of the numerator where possible.
 
-    Solved are those whose variable no other solved numerator has: x + r = q·p becomes x = q·p - r.
+    An equation is solved if no other solved numerator has its variable: x + r = q·p becomes x = q·p - r.
+    Returns the solutions by symbol, and the other equations as assertions.
     """
     solved: dict[str, str] = {}
     equations: list[str] = []
@@ -241,18 +242,16 @@ def _solve(ratios: list[tuple[Term, Term]]) -> tuple[dict[str, str], list[str]]:
 
 
 def _first_summand(expression: Term) -> tuple[Term, Term]:
-    """The leftmost summand of a sum and the rest of it."""
-    match expression:
-        case t.Sum((first, *others)) if others:
-            inner, rest = _first_summand(first)
-            return inner, t.Sum((rest, *others))
-        case _:
-            return expression, t.Number(Fraction(0))
+    """Return the leftmost summand of a sum, and the sum of the rest."""
+    if not isinstance(expression, t.Sum) or len(expression.terms) < 2:
+        return expression, t.Number(Fraction(0))
+    inner, rest = _first_summand(expression.terms[0])
+    return inner, t.Sum((rest, *expression.terms[1:]))
 
 
-@once
+@memoised
 def opaque_symbols(formula: Formula) -> frozenset[str]:
-    """The constants of all that only the road decides in a state formula."""
+    """Return the names of all lane predicates in a state formula."""
     if isinstance(formula, f.Occupies | f.Some | f.Every):
         return frozenset({opaque(formula)})
     return frozenset[str]().union(*map(opaque_symbols, f.children(formula)))

@@ -1,6 +1,6 @@
-"""The subject of evidence: the kind of question that it answers and the name of the thing asked about.
+"""The subject of evidence: the kind of question that it answers, and the name of the subject.
 
-Links of requirements match on these, never on labels, which are words for people.
+Links of requirements match on these, never on labels, which are text for people.
 """
 
 from enum import StrEnum
@@ -10,7 +10,7 @@ from roadproof.runtime.records import dataclass
 
 
 class SubjectKind(StrEnum):
-    """The kinds of subjects; OTHER: a claim or drive that no requirement names by itself."""
+    """The kinds of subjects; OTHER: a claim or drive that no requirement can name by itself."""
 
     PROPERTY = "property"
     TEST = "test"
@@ -28,7 +28,7 @@ OF_TESTS = (SubjectKind.TEST, SubjectKind.RUN, SubjectKind.FACT)
 
 
 class Subject(NamedTuple):
-    """A kind of subject with its name, and the spec set that is asked; empty: that of the whole question."""
+    """A kind of subject with its name and spec set; an empty set is the set of the whole question."""
 
     kind: SubjectKind = SubjectKind.OTHER
     name: str = ""
@@ -46,15 +46,8 @@ TestedSide: TypeAlias = Literal["preventable", "unpreventable", "not foreseen", 
 
 @dataclass(frozen=True, kw_only=True)
 class DriverSide:
-    """What becomes of a scenario that a test shows, under a driver model."""
+    """The fate of a scenario that a test shows, under a driver model."""
 
     driver: str
     scenario: str
     side: TestedSide
-
-
-def subject_of_fact(test: str, relation: str) -> Subject:
-    """The subject of a fact of a catalogue; one without a test is about a scenario."""
-    if not test:
-        return OTHER
-    return Subject(SubjectKind.RUN if relation == "runs" else SubjectKind.FACT, test)

@@ -1,6 +1,6 @@
 """Moments: affine sums of named times and parameters, such as ``t3 + minDanger``.
 
-They are what quantifiers over time are instantiated with, so they must print and read back alike.
+Quantifiers over time are instantiated with moments, so a printed moment must parse to the same moment.
 """
 
 import re
@@ -12,11 +12,11 @@ from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.node import node, once
+from roadproof.logic.node import memoised, node
 from roadproof.logic.rewrite import intervals_of
 from roadproof.logic.terms import Term
 
-# Words of SMT-LIB and its theories that are names in the language of claims.
+# Reserved words of SMT-LIB and its theories that are legal names in claims.
 _RESERVED = re.compile(
     "_|as|par|forall|exists|let|match|distinct|ite|xor|implies|abs|div|mod|to_int|to_real|is_int|select|store"
     "|BINARY|DECIMAL|HEXADECIMAL|NUMERAL|STRING"
@@ -26,7 +26,7 @@ _PART = re.compile(r"([+-]?)\s*(?:(\d+(?:/\d+)?)\s*(?:\*\s*)?)?([A-Za-z_]\w*)?",
 
 @node
 class Moment:
-    """Σ coefficient · name + constant; ``parts`` is sorted by name and has no zero coefficient."""
+    """The sum Σ coefficient · name + constant; ``parts`` is sorted by name and has no zero coefficient."""
 
     parts: tuple[tuple[str, Fraction], ...] = ()
     constant: Fraction = Fraction(0)
@@ -37,7 +37,7 @@ class Moment:
     def __sub__(self, other: "Moment") -> "Moment":
         return _sum(self, [(name, -factor) for name, factor in other.parts], -other.constant)
 
-    @once
+    @memoised
     def __str__(self) -> str:
         shown = ""
         for name, factor in self.parts:
@@ -49,20 +49,20 @@ class Moment:
         return shown.strip()
 
     def value(self, values: Mapping[str, Fraction]) -> Fraction:
-        """The moment in seconds where each name has a value."""
+        """Return the moment in seconds, given a value for each name."""
         total = self.constant
         for name, factor in self.parts:
             value = values[name] if factor == 1 else values[name] * factor
             total = total + value if total else value
         return total
 
-    @once
+    @memoised
     def smt(self) -> str:
-        """As an SMT-LIB term of sort Real."""
+        """Return the moment as an SMT-LIB term of sort Real."""
         names = ((constant(name), k) for name, k in self.parts)
-        summands = [name if k == 1 else f"(* {rational(k)} {name})" for name, k in names]
+        summands = [name if k == 1 else f"(* {smt_rational(k)} {name})" for name, k in names]
         if self.constant or not summands:
-            summands.append(rational(self.constant))
+            summands.append(smt_rational(self.constant))
         return summands[0] if len(summands) == 1 else f"(+ {' '.join(summands)})"
 
 
@@ -70,13 +70,13 @@ ZERO = Moment()
 
 
 def constant(name: str) -> str:
-    """The SMT-LIB constant for a time, a parameter or a variable: no word that a solver reads otherwise."""
+    """Return the SMT-LIB constant of a time, parameter or variable; reserved words get a dot appended."""
     return f"{name}." if _RESERVED.fullmatch(name) else name
 
 
 @lru_cache(maxsize=4096)
-def at(name: str) -> Moment:
-    """The moment called ``name``."""
+def named_moment(name: str) -> Moment:
+    """Return the moment with one name."""
     return Moment(((name, Fraction(1)),))
 
 
@@ -84,12 +84,12 @@ def _sum(moment: Moment, parts: Iterable[tuple[str, Fraction]], constant: Fracti
     total = dict(moment.parts)
     for name, factor in parts:
         total[name] = total[name] + factor if name in total else factor
-    kept = tuple(sorted(item for item in total.items() if item[1]))
-    return Moment(kept, moment.constant + constant if constant else moment.constant)
+    nonzero = tuple(sorted(item for item in total.items() if item[1]))
+    return Moment(nonzero, moment.constant + constant if constant else moment.constant)
 
 
-def rational(value: Fraction) -> str:
-    """A rational as SMT-LIB text."""
+def smt_rational(value: Fraction) -> str:
+    """Return a rational as SMT-LIB text."""
     shown = f"{abs(value.numerator)}.0"
     if value.denominator != 1:
         shown = f"(/ {shown} {value.denominator}.0)"
@@ -97,12 +97,12 @@ def rational(value: Fraction) -> str:
 
 
 def moment_of(term: Term) -> Moment:
-    """An interval bound as a moment. Raises ``InputError`` where it is not affine in parameters."""
+    """Return an interval bound as a moment. Raises ``InputError`` if it is not affine in parameters."""
     match term:
         case t.Number(value, _):
             return Moment((), value)
         case t.Parameter(name, _):
-            return at(name)
+            return named_moment(name)
         case t.Sum(summands):
             total = ZERO
             for summand in summands:
@@ -125,8 +125,6 @@ def moment_of(term: Term) -> Moment:
             divisor = t.constant_value(denominator)
             if divisor:
                 return moment_of(t.Product((t.Number(1 / divisor), numerator)))
-        case _:
-            pass
     constant = t.constant_value(term)
     if constant is not None:
         return Moment((), constant)
@@ -136,7 +134,7 @@ def moment_of(term: Term) -> Moment:
 def compared_times(
     formula: Formula, parameters: Collection[str]
 ) -> tuple[Moment, f.Comparison, Moment] | None:
-    """What ``formula`` compares, where it is sums of numbers and some of ``parameters``; else None."""
+    """Return both sides and the operator of a comparison of affine sums over ``parameters``; else None."""
     if not isinstance(formula, f.Compare):
         return None
     leaves = [leaf for side in (formula.left, formula.right) for leaf in t.leaves(side)]
@@ -150,33 +148,35 @@ def compared_times(
 
 
 def bound_parameters(formula: Formula) -> frozenset[str]:
-    """The parameters in the interval bounds of ``formula``."""
+    """Return the parameters in the interval bounds of a formula."""
     bounds = [
         bound
         for interval in intervals_of(formula)
         for bound in (interval.low, interval.high)
         if bound is not None
     ]
-    return frozenset(x.name for bound in bounds for x in t.leaves(bound) if isinstance(x, t.Parameter))
+    return frozenset(
+        leaf.name for bound in bounds for leaf in t.leaves(bound) if isinstance(leaf, t.Parameter)
+    )
 
 
 def read_moment(text: str) -> Moment:
-    """The inverse of ``str``. Raises ``InputError``."""
+    """Return the moment of a text, the inverse of ``str``. Raises ``InputError``."""
     total, position = ZERO, 0
     stripped = text.strip()
     if not stripped:
         raise InputError("an empty text is no moment: write 0")
     while position < len(stripped):
-        found = _PART.match(stripped, position)
-        if found is None or found.end() == position or (not found[2] and not found[3]):
+        match = _PART.match(stripped, position)
+        if match is None or match.end() == position or (not match[2] and not match[3]):
             raise InputError(f"'{text[:60]}' is no moment: write sums such as t3 + minDanger")
         try:
-            factor = Fraction(found[2] or 1) * (-1 if found[1] == "-" else 1)
+            factor = Fraction(match[2] or 1) * (-1 if match[1] == "-" else 1)
         except (ValueError, ZeroDivisionError):
-            raise InputError(f"'{text[:60]}' is no moment: '{found[2][:20]}' is no number") from None
-        piece = Moment(((found[3], factor),)) if found[3] else Moment((), factor)
-        total += piece
-        position = found.end()
+            raise InputError(f"'{text[:60]}' is no moment: '{match[2][:20]}' is no number") from None
+        summand = Moment(((match[3], factor),)) if match[3] else Moment((), factor)
+        total += summand
+        position = match.end()
         while position < len(stripped) and stripped[position] == " ":
             position += 1
     return total

@@ -1,1 +1,1 @@
-"""What roadproof does beyond its core: each folder is a small product that can be left out."""
+"""The extensions of roadproof: each folder is a small product that can be left out."""

@@ -1,4 +1,4 @@
-"""Scenarios and definitions as specification files; elaboration to formulas, and binding to a road.
+"""Specification files with definitions and scenarios; elaboration to formulas, and binding to a road.
 
 Imports logic and world.
 """

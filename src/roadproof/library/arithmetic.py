@@ -1,33 +1,35 @@
-"""Terms made of terms: what may be compared, added and divided, and what may bound an interval."""
+"""Elaboration of arithmetic: comparisons, operations on terms, and bounds of intervals, with dimensions."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from typing import Literal, TypeAlias, assert_never
 
 from roadproof.errors import Position, TextError
 from roadproof.library.quantity import SECONDS, Quantity, product_dimension, same_dimension, unit_name
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.custom_names import own_signal, own_truth
+from roadproof.logic.custom_names import custom_signal, signal_is_true
 from roadproof.logic.formula import Formula
 from roadproof.logic.syntax import Binding, Definition, ParameterDeclaration, SignalDeclaration
 from roadproof.world.units import UNITS
 
-COMPARISONS = ("<", "<=", ">", ">=", "=", "!=")
-Parameters = Mapping[str, ParameterDeclaration]
+ComparisonOperator: TypeAlias = Literal["<", "<=", ">", ">=", "=", "!="]
+ArithmeticOperator: TypeAlias = Literal["+", "-", "*", "/", "^"]
+Parameters: TypeAlias = Mapping[str, ParameterDeclaration]
 
 
 class ValueOfTermError(TextError):
-    """A term does not fit because of what it may be worth, which may depend on a definition's arguments."""
+    """The error for a term whose value does not fit, perhaps only for some arguments of a definition."""
 
 
 def literal(value: Fraction, unit: str) -> Quantity:
-    """A number as it is written; 0 without a unit fits every dimension."""
+    """Return a number as it is written; 0 without a unit fits every dimension."""
     factor, dimension = UNITS[unit or "unitless"]
     return Quantity(t.Number(value * factor, dimension), None if not unit and value == 0 else dimension)
 
 
 def of_vehicle(name: str, vehicle: str) -> Quantity:
-    """A size or a signal of a vehicle."""
+    """Return a size or a signal of a vehicle."""
     for size, dimension in t.SIZE_DIMENSIONS.items():
         if name == size:
             return Quantity(t.Size(size, vehicle), dimension)
@@ -37,58 +39,62 @@ def of_vehicle(name: str, vehicle: str) -> Quantity:
     raise AssertionError(name)
 
 
-def own(signal: SignalDeclaration, vehicle: str) -> Formula | Quantity:
-    """An own signal that is not derived: a number, or that it is true."""
-    made = own_signal(signal, vehicle)
-    return own_truth(made) if made.truth else Quantity(made, made.dimension)
+def custom_signal_value(signal: SignalDeclaration, vehicle: str) -> Formula | Quantity:
+    """Return a custom signal that is not derived: a number, or the formula that it is true."""
+    term = custom_signal(signal, vehicle)
+    return signal_is_true(term) if term.truth else Quantity(term, term.dimension)
 
 
-def check_derived(signal: SignalDeclaration, made: Formula | Quantity, at: Position) -> None:
-    """What an own signal is derived by has to be what it is declared as."""
-    if isinstance(made, Quantity) != (signal.sort != "bool"):
-        found = "a number" if isinstance(made, Quantity) else "a formula"
-        raise TextError(f"signal '{signal.name}' is declared {signal.sort}, but derived by {found}", at)
-    if isinstance(made, Quantity) and made.dimension not in (None, UNITS[signal.sort][1]):
+def check_derived(signal: SignalDeclaration, body: Formula | Quantity, at: Position) -> None:
+    """Raise ``TextError`` unless the body of a derived custom signal has the declared type and unit."""
+    if isinstance(body, Quantity) != (signal.sort != "bool"):
+        kind = "a number" if isinstance(body, Quantity) else "a formula"
+        raise TextError(f"signal '{signal.name}' is declared {signal.sort}, but derived by {kind}", at)
+    if isinstance(body, Quantity) and body.dimension not in (None, UNITS[signal.sort][1]):
         raise TextError(
             f"signal '{signal.name}' is declared in {signal.sort}, but derived in "
-            f"{unit_name(made.dimension)}",
+            f"{unit_name(body.dimension)}",
             at,
         )
 
 
-def argument(given: Quantity, binding: Binding, definition: Definition, at: Position) -> Quantity:
-    """A number as an argument of a definition, in the unit that it is declared with."""
-    wanted = UNITS[binding.sort][1]
-    if given.dimension not in (None, wanted):
+def argument(quantity: Quantity, binding: Binding, definition: Definition, at: Position) -> Quantity:
+    """Return a number as an argument of a definition. Raises ``TextError`` for another unit than declared."""
+    dimension = UNITS[binding.sort][1]
+    if quantity.dimension not in (None, dimension):
         raise TextError(
             f"argument {binding.name} of '{definition.name}' is in {binding.sort}, "
-            f"but this is in {unit_name(given.dimension)}",
+            f"but this is in {unit_name(quantity.dimension)}",
             at,
         )
-    return Quantity(given.term, wanted)
+    return Quantity(quantity.term, dimension)
 
 
-def compare(op: str, left: Quantity, right: Quantity, at: Position) -> Formula:
-    """``left op right``; an equality is two comparisons."""
+def compare(op: ComparisonOperator, left: Quantity, right: Quantity, at: Position) -> Formula:
+    """Return ``left op right``; an equality becomes two comparisons."""
     same_dimension(left, right, "compared", at)
-    one, other = left.term, right.term
+    left_term, right_term = left.term, right.term
     match op:
         case "<" | "<=" | ">" | ">=":
-            return f.Compare(one, op, other)
+            return f.Compare(left_term, op, right_term)
         case "=":
-            return f.And((f.Compare(one, "<=", other), f.Compare(one, ">=", other)))
+            return f.And((f.Compare(left_term, "<=", right_term), f.Compare(left_term, ">=", right_term)))
+        case "!=":
+            return f.Or((f.Compare(left_term, "<", right_term), f.Compare(left_term, ">", right_term)))
         case _:
-            return f.Or((f.Compare(one, "<", other), f.Compare(one, ">", other)))
+            assert_never(op)
 
 
 def negative(quantity: Quantity, at: Position) -> Quantity:
-    """``-quantity``."""
+    """Return ``-quantity``."""
     refuse_inverse(at, quantity)
     return Quantity(t.negate(quantity.term), quantity.dimension)
 
 
-def combine(op: str, left: Quantity, right: Quantity, parameters: Parameters, at: Position) -> Quantity:
-    """``left op right`` where ``op`` is + - * / or ^."""
+def combine(
+    op: ArithmeticOperator, left: Quantity, right: Quantity, parameters: Parameters, at: Position
+) -> Quantity:
+    """Return ``left op right``. Raises ``TextError`` for wrong dimensions, and a divisor that may be zero."""
     refuse_inverse(at, left, right)
     match op:
         case "+":
@@ -100,12 +106,14 @@ def combine(op: str, left: Quantity, right: Quantity, parameters: Parameters, at
         case "/":
             _refuse_zero(right.term, parameters, at)
             return Quantity(t.Quotient(left.term, right.term), product_dimension(left, right, -1))
-        case _:
+        case "^":
             exponent = t.constant_value(right.term)
             assert exponent is not None, "the grammar admits only a number as exponent"
             metres, seconds = left.dimension or (0, 0)
             power = int(exponent)
             return Quantity(t.Power(left.term, power), (metres * power, seconds * power))
+        case _:
+            assert_never(op)
 
 
 def _refuse_zero(denominator: t.Term, parameters: Parameters, at: Position) -> None:
@@ -119,7 +127,7 @@ def _refuse_zero(denominator: t.Term, parameters: Parameters, at: Position) -> N
 
 
 def _is_positive(term: t.Term, parameters: Parameters, or_zero: bool = False) -> bool:
-    """Whether ``term`` is greater than zero (or not below it) by its form alone."""
+    """Return whether the form of ``term`` shows that it is positive (or not negative, with ``or_zero``)."""
     match term:
         case t.Number(value, _):
             return value > 0 or (or_zero and value == 0)
@@ -130,25 +138,27 @@ def _is_positive(term: t.Term, parameters: Parameters, or_zero: bool = False) ->
             return True
         case t.Sum() | t.Product() | t.Power() | t.Quotient() | t.Maximum() | t.Minimum():
             return all(_is_positive(child, parameters, or_zero) for child in t.children(term))
-        case _:
+        case t.Variable() | t.Signal() | t.CustomSignal() | t.Inverse():
             return False
+        case _:
+            assert_never(term)
 
 
 def absolute(quantity: Quantity, at: Position) -> Quantity:
-    """``abs(quantity)``."""
+    """Return ``abs(quantity)``."""
     refuse_inverse(at, quantity)
     return Quantity(t.Maximum((quantity.term, t.negate(quantity.term))), quantity.dimension)
 
 
 def inverse(quantity: Quantity, at: Position) -> Quantity:
-    """``inverse(quantity)``, infinite at 0."""
+    """Return ``inverse(quantity)``, infinite at 0."""
     refuse_inverse(at, quantity)
     one = Quantity(quantity.term, (0, 0))
     return Quantity(t.Inverse(quantity.term), product_dimension(one, quantity, -1))
 
 
 def extremum(name: str, quantities: Sequence[Quantity], at: Position) -> Quantity:
-    """``max`` or ``min`` of at least one quantity."""
+    """Return ``max`` or ``min`` of at least one quantity."""
     for other in quantities[1:]:
         same_dimension(quantities[0], other, "compared", at)
     refuse_inverse(at, *quantities)
@@ -163,7 +173,7 @@ def refuse_inverse(at: Position, *quantities: Quantity) -> None:
 
 
 def interval(low: t.Term, high: t.Term | None, at: Position) -> f.Interval:
-    """The interval between two bounds. Raises ``TextError`` where it is empty or starts in the past."""
+    """Return the interval between two bounds. Raises ``TextError`` if it is empty or starts in the past."""
     low_value = t.constant_value(low)
     high_value = None if high is None else t.constant_value(high)
     if low_value is not None and low_value < 0:
@@ -178,7 +188,7 @@ def interval(low: t.Term, high: t.Term | None, at: Position) -> f.Interval:
 
 
 def bound(quantity: Quantity, parameters: Parameters, at: Position) -> t.Term:
-    """A bound of an interval, in seconds: a number, or a term of parameters that is never negative."""
+    """Return a bound of an interval in seconds: a number, or a term of parameters that is never negative."""
     value = t.constant_value(quantity.term)
     if (value is None or quantity.dimension not in (None, (0, 0))) and quantity.dimension != SECONDS:
         raise TextError(f"an interval bound is a time, but this is in {unit_name(quantity.dimension)}", at)

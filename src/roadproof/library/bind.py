@@ -1,4 +1,4 @@
-"""Values of parameters, and a formula on a road with values: comparisons of signals and sizes only."""
+"""Values of parameters, and binding: a formula on a road with values compares signals and sizes only."""
 
 import math
 import re
@@ -10,7 +10,7 @@ from numbers import Integral, Real
 from typing import TypeAlias, assert_never
 
 from roadproof.errors import InputError
-from roadproof.library.specification import Library, is_within, source_of, unknown
+from roadproof.library.specification import Library, satisfies_bound, source_of, unknown_name
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
@@ -20,37 +20,37 @@ from roadproof.world.units import UNITS
 
 
 def default_values(library: Library) -> dict[str, Fraction]:
-    """The declared value of every parameter, in SI units."""
+    """Return the declared value of every parameter, in SI units."""
     return {name: p.value * UNITS[p.unit][0] for name, p in library.parameters.items()}
 
 
-def values_with(library: Library, given: Mapping[str, Fraction]) -> dict[str, Fraction]:
-    """The value of every parameter, those of ``given`` in place of the declared ones, in SI units.
+def values_with(library: Library, overrides: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """Return the value of every parameter in SI units: from ``overrides``, else as declared.
 
     Raises ``InputError`` for a name that is not declared and for a value outside its declared bound.
     """
-    for name, value in given.items():
+    for name, value in overrides.items():
         if name not in library.parameters:
-            raise InputError(f"{name}={value}: {unknown('parameter', name, library.parameters)}")
+            raise InputError(f"{name}={value}: {unknown_name('parameter', name, library.parameters)}")
         declared = library.parameters[name]
-        if not is_within(declared.bound, value):
+        if not satisfies_bound(declared.bound, value):
             where = source_of(library, declared).name
             at = f"{where}, line {declared.at.line}, column {declared.at.column}: "
             raise InputError(f"{name}={value}: {at}the library demands {name} {declared.bound} 0")
-    return {**default_values(library), **given}
+    return {**default_values(library), **overrides}
 
 
 def bind(formula: Formula, road: Road, lanes: Mapping[str, str], values: Mapping[str, Fraction]) -> Formula:
-    """``formula`` on ``road``: free lanes replaced by ``lanes``, parameters by ``values``.
+    """Return ``formula`` on ``road``, with free lanes replaced by ``lanes`` and parameters by ``values``.
 
-    Quantifiers become finite conjunctions and disjunctions and ``occ`` becomes comparisons, so the
-    result has no ``Some``, ``Every``, ``Occupies`` or ``Parameter``. Raises ``InputError`` for a
-    lane that the road does not have or that ``lanes`` does not name, and for a number without value.
+    Quantifiers become finite conjunctions and disjunctions, and ``occ`` becomes comparisons. The result has
+    no ``Some``, ``Every``, ``Occupies`` or ``Parameter``. Raises ``InputError`` for a lane that the road does
+    not have or that ``lanes`` does not name, and for a number without value.
     """
     return _bound(formula, road, tuple(sorted(lanes.items())), tuple(sorted(values.items())))
 
 
-# A search asks for the same formula again and again: for its start, its engines and the judge.
+# A search binds the same formula for its start, its engines and the judge.
 @lru_cache(maxsize=32)
 def _bound(
     formula: Formula, road: Road, lanes: tuple[tuple[str, str], ...], values: tuple[tuple[str, Fraction], ...]
@@ -60,7 +60,7 @@ def _bound(
 
 
 def refuse_variables(formula: Formula) -> None:
-    """Raise ``InputError`` where a number declared with ``given`` has no value."""
+    """Raise ``InputError`` if a number that is declared with ``given`` occurs, as it has no value."""
     for leaf in leaves_of(formula):
         if isinstance(leaf, t.Variable):
             raise InputError(
@@ -70,7 +70,7 @@ def refuse_variables(formula: Formula) -> None:
 
 
 def occupies(vehicle: str, lanelet: Lanelet) -> Formula:
-    """occ(a, l) on a straight road: box and lanelet overlap with positive area (semantics §4)."""
+    """Return occ(vehicle, lanelet) on a straight road: their areas overlap (semantics §4)."""
     front: t.Term = t.Signal("s", vehicle)
     left: t.Term = t.Signal("d", vehicle)
     metres = (1, 0)
@@ -94,7 +94,7 @@ class _Grounder:
         self.known: dict[tuple[Formula, tuple[tuple[str, str], ...]], Formula] = {}
 
     def visit(self, formula: Formula, scope: Mapping[str, str]) -> Formula:
-        """``scope`` gives the lane or lanelet that each bound variable stands for."""
+        """Return the bound formula; ``scope`` maps each bound variable to a lane or lanelet."""
         key = (formula, tuple(sorted(scope.items())))
         if key not in self.known:
             self.known[key] = self._visit(formula, scope)
@@ -111,13 +111,15 @@ class _Grounder:
             case f.Application(name, arguments, body):
                 shown = tuple(scope.get(a, self.lanes.get(a, a)) for a in arguments)
                 return f.Application(name, shown, self.visit(body, scope))
-            case _:
+            case (
+                f.Truth() | f.Compare() | f.Not() | f.And() | f.Or() | f.Until() | f.Eventually() | f.Always()
+            ):
                 parts = tuple(self.visit(child, scope) for child in f.children(formula))
                 return f.with_children(formula, parts)
 
     def _lanelet(self, name: str) -> Lanelet:
         if name not in self.lanelets:
-            raise InputError(f"lanelet={name}: {unknown('lanelet', name, self.lanelets)}")
+            raise InputError(f"lanelet={name}: {unknown_name('lanelet', name, self.lanelets)}")
         return self.lanelets[name]
 
     def _lane(self, name: str, scope: Mapping[str, str]) -> str:
@@ -133,7 +135,7 @@ class _Grounder:
             case "lanes":
                 return self.road.lanes
             case "adjacent":
-                return self.road.beside(self._lane(domain.of, scope))
+                return self.road.adjacent_lanes(self._lane(domain.of, scope))
             case "lanelets":
                 return tuple(x.id for x in self.road.lanelets_of(self._lane(domain.of, scope)))
             case "zone":
@@ -146,9 +148,9 @@ _VALUE = re.compile(r"([+-]?\d{1,30}(?:\.\d{1,30})?(?:/\d{1,30})?)\s*([A-Za-z][A
 
 
 def exact(name: str, value: Number, unit: str) -> Fraction:
-    """A value in SI units; a bare number is in ``unit``, a float is the decimal that Python shows.
+    """Return a value in SI units; a bare number is in ``unit``, a float is the decimal that Python shows.
 
-    Numbers of numpy are read as those of Python. Raises ``InputError`` that names ``name``.
+    Numbers of numpy are accepted. Raises ``InputError`` that names ``name``.
     """
     if isinstance(value, str):
         return read_value(name, value, unit)
@@ -163,39 +165,43 @@ def _fraction(value: Real | Decimal) -> Fraction:
     match value:
         case Fraction() | Decimal():
             return Fraction(value)
-        case Integral():  # that of numpy has 64 bits, and so had the parts of a fraction
+        case Integral():  # a numpy integer has 64 bits; a Fraction made of it would, too
             return Fraction(int(value))
-        case _:
+        case _:  # open: floats of Python and numpy
             return Fraction(str(value))
 
 
 def read_value(name: str, text: str, unit: str) -> Fraction:
-    """A value in SI units; without unit it is in ``unit``. Raises ``InputError`` that names ``name``."""
+    """Parse a value and return it in SI units; without a unit it is in ``unit``.
+
+    Raises ``InputError`` that names ``name``.
+    """
     short = name.rpartition(" ")[2]
-    read = _VALUE.fullmatch(text.strip())
-    if read is None:
+    match = _VALUE.fullmatch(text.strip())
+    if match is None:
         raise InputError(
             f"{name}={text}: this is no value; write a decimal or a fraction, with a unit if you "
             f"like, such as {short}=0.6, {short}=3/5 or '{short}=0.6 {unit}'"
         )
-    number, given = read[1], read[2] or unit
-    if given not in UNITS:
-        raise InputError(f"{name}={text}: {unknown('unit', given, UNITS)}")
-    if UNITS[given][1] != UNITS[unit][1]:
-        raise InputError(f"{name}={text}: {short} is in {unit}, which {given} does not measure")
+    number, given_unit = match[1], match[2] or unit
+    if given_unit not in UNITS:
+        raise InputError(f"{name}={text}: {unknown_name('unit', given_unit, UNITS)}")
+    if UNITS[given_unit][1] != UNITS[unit][1]:
+        raise InputError(f"{name}={text}: {short} is in {unit}, which {given_unit} does not measure")
     top, _, bottom = number.partition("/")
     if bottom and Fraction(bottom) == 0:
         raise InputError(f"{name}={text}: the denominator is zero")
-    return Fraction(top) / Fraction(bottom or 1) * UNITS[given][0]
+    return Fraction(top) / Fraction(bottom or 1) * UNITS[given_unit][0]
 
 
 def without_empty_windows(formula: Formula) -> Formula:
-    """``formula`` with operators whose window ends before it begins replaced by what they then are.
+    """Return ``formula`` with operators over empty intervals replaced: G by true, F and U by false.
 
-    Raises ``InputError`` where a bound has no value.
+    Raises ``InputError`` if a bound has no value.
     """
 
     def visit(current: Formula) -> Formula:
+        """Replace an operator whose interval is empty."""
         if not any(map(_is_empty, f.intervals(current))):
             return current
         match current:
@@ -221,8 +227,8 @@ def _is_empty(interval: f.Interval) -> bool:
     return high is not None and high < low
 
 
-def telling_values(library: Library, formula: Formula, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
-    """Values of the parameters that ``formula`` speaks of, and of those that the user has changed."""
+def used_values(library: Library, formula: Formula, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """Return the values of the parameters in ``formula``, and of those that the user has changed."""
     declared = default_values(library)
-    spoken = parameters_of(formula)
-    return {n: v for n, v in values.items() if n in spoken or v != declared.get(n)}
+    used = parameters_of(formula)
+    return {n: v for n, v in values.items() if n in used or v != declared.get(n)}

@@ -1,6 +1,7 @@
-"""All that is wrong with a text at once: what does not parse, and what means nothing in its definitions.
+"""Diagnosis of specification texts and formulas: all syntax errors and all errors of meaning at once.
 
-An error in a definition that others use is told once, and nothing follows from what could not be read.
+An error in a definition that others use is reported once. Names whose declarations do not parse cause no
+further errors.
 """
 
 import re
@@ -13,17 +14,16 @@ from typing import Literal, TypeAlias
 from roadproof.errors import TextError, once_each, raise_all
 from roadproof.library import scopes
 from roadproof.library.arithmetic import ValueOfTermError
-from roadproof.library.elaborate import mistakes_in
+from roadproof.library.elaborate import claim_errors_in
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.loading import gather, gather_files, load_library, place_of, sources_of
-from roadproof.library.notes import Known, LostError
+from roadproof.library.notes import ElaborationCache, UnreadableNameError
 from roadproof.library.quantity import Quantity
 from roadproof.library.scopes import Value, Vehicles
 from roadproof.library.specification import Library, Source, Specification, source_of
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
 from roadproof.logic.parse import parse_claim
-from roadproof.logic.recover import parse_pieces
 from roadproof.logic.syntax import Definition, ParameterDeclaration
 from roadproof.runtime.records import dataclass
 from roadproof.world.units import UNITS
@@ -36,7 +36,7 @@ MOST_VEHICLES = 3
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """A remark about a text from ``line`` and ``column`` up to, and without, the end; all count from 1."""
+    """A message about a text from ``line`` and ``column`` up to, but without, the end; all count from 1."""
 
     line: int
     column: int
@@ -49,9 +49,9 @@ class Diagnostic:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What is said of a text, in its order, and ``library``: what could be read of it on top of another.
+    """The diagnostics of a text, in its order, and the ``library`` of the statements that could be read.
 
-    ``lost``: how names look that could not be read, of which ``claim_errors`` need not speak.
+    ``lost``: patterns of names whose declarations could not be read; pass them to ``claim_errors``.
     """
 
     diagnostics: tuple[Diagnostic, ...]
@@ -61,59 +61,61 @@ class Diagnosis:
 
 @dataclass
 class Proofreader:
-    """Says what is wrong with texts on top of the library ``below``, one after the other, as editors ask it.
+    """A checker of successive versions of texts on top of the library ``below``, for editors.
 
-    What definitions below mean that a text does not touch is kept from one text to the next, and so is what
-    was read of the statements of a text: a change to one statement takes about the time of that statement.
-    What a text calls a set of its own has to extend the same set in each of them.
+    It caches the definitions of ``below`` that a text does not affect, and the parsed statements of texts, so
+    that a change of one statement takes about the time of that statement. If a text declares a spec set, all
+    versions must extend the same parent.
     """
 
     below: Library
-    known: dict[str, Known] = field(default_factory=dict)
+    known: dict[str, ElaborationCache] = field(default_factory=dict)
 
     @cached_property
     def mentions(self) -> dict[str, set[str]]:
-        """The names of the definitions that use a name themselves, in any set."""
-        found: dict[str, set[str]] = {}
+        """The definitions that use a name directly, in any set, by that name."""
+        users: dict[str, set[str]] = {}
         variants = (x for block in self.below.variants.values() for x in block)
         blocks = (x for block in self.below.sets.values() for x in block.definitions)
         for definition in (*self.below.definitions.values(), *blocks, *variants):
             for part in syntax.walk(definition.body):
                 if isinstance(part, syntax.Call | syntax.Name):
-                    found.setdefault(part.name.partition("@")[0], set()).add(definition.name)
-        return found
+                    users.setdefault(part.name.partition("@")[0], set()).add(definition.name)
+        return users
 
     def read(self, text: str, name: str = "text") -> Diagnosis:
-        """What is wrong with a specification text. Never raises for what is in it."""
+        """Return the diagnosis of a specification text. Never raises for its content."""
         source = Source(name, text)
         errors, library, lost = self.errors_in(source)
-        found = [as_diagnostic(error, text) for error in errors if error.source == name]
+        diagnostics = [as_diagnostic(error, text) for error in errors if error.source == name]
         replaced = [x for x in library.definitions.values() if source_of(library, x) == source]
-        found += [_replaces(x, text) for x in replaced if x.name in self.below.definitions]
-        return Diagnosis(tuple(sorted(found, key=lambda x: (x.line, x.column))), library, lost)
+        diagnostics += [_replaces(x, text) for x in replaced if x.name in self.below.definitions]
+        return Diagnosis(tuple(sorted(diagnostics, key=lambda x: (x.line, x.column))), library, lost)
 
     def errors_in(self, *sources: Source) -> tuple[list[TextError], Library, Lost]:
-        """What is wrong with texts that belong together; what could be read of them, and what is lost."""
+        """Return the errors in texts that belong together, the library of what was read, and lost names."""
+        from roadproof.logic.recover import parse_pieces  # here: for texts with mistakes alone
+
         parsed = {source: parse_pieces(source.text, source.name) for source in sources}
         gathered = gather(parsed, self.below)
         library = replace(gathered.library, files=(*self.below.files, *sources))
-        said = (x for one in parsed.values() for x in one.statements)
-        told = {x.name for x in said if isinstance(x, Definition | ParameterDeclaration)}
-        homes = _homes(library, sources)
-        changed = self._reached(told | {x.name for _, definitions in homes for x in definitions})
+        statements = (x for result in parsed.values() for x in result.statements)
+        declared = {x.name for x in statements if isinstance(x, Definition | ParameterDeclaration)}
+        homes = _in_force(library, sources)
+        changed = self._affected_by(declared | {x.name for _, definitions in homes for x in definitions})
         errors = list(gathered.errors)
         for specification, definitions in homes:
             key = repr((specification.set_name, sorted(specification.options.items())))
-            kept = self.known.setdefault(key, {})
-            untouched = {x: made for x, made in kept.items() if x[0] not in changed}
+            cached = self.known.setdefault(key, {})
+            untouched = {x: entry for x, entry in cached.items() if x[0] not in changed}
             walk = Elaborator(specification, known=untouched, lost=gathered.lost)
             errors += _errors_in_all(walk, definitions)
             if not (gathered.errors or errors):
-                kept |= {x: made for x, made in walk.known.items() if x[0] not in changed}
+                cached |= {x: entry for x, entry in walk.known.items() if x[0] not in changed}
         return once_each(errors), library, gathered.lost
 
-    def _reached(self, changed: set[str]) -> set[str]:
-        """Names that mean something else where ``changed`` ones do."""
+    def _affected_by(self, changed: set[str]) -> set[str]:
+        """Return the names whose meaning depends on ``changed`` ones."""
         reached, waiting = set(changed), list(changed)
         while waiting:
             more = self.mentions.get(waiting.pop(), set()) - reached
@@ -123,35 +125,35 @@ class Proofreader:
 
 
 def diagnose(text: str, below: Library, name: str = "text") -> Diagnosis:
-    """What is wrong with a specification text on top of a library. Never raises for what is in the text."""
+    """Return the diagnosis of a specification text on top of a library. Never raises for its content."""
     return Proofreader(below).read(text, name)
 
 
 def diagnose_claim(text: str, specification: Specification) -> tuple[Diagnostic, ...]:
-    """What is wrong with a formula in the definitions of a specification. Never raises for what is in it."""
+    """Return the diagnostics of a formula in a specification. Never raises for its content."""
     return tuple(as_diagnostic(error, text) for error in claim_errors(specification, text))
 
 
 def claim_errors(
     specification: Specification, text: str, source: str = "claim", lost: Lost = ()
 ) -> list[TextError]:
-    """All that is wrong with a formula, in its order."""
+    """Return all errors in a formula, in its order."""
     try:
         claim = parse_claim(text, source)
     except TextError as error:
         return [error]
-    return mistakes_in(specification, claim, source, text, lost)
+    return claim_errors_in(specification, claim, source, text, lost)
 
 
 def checked_library(files: Iterable[Path | Source] = ()) -> Library:
-    """The bundled library with the users' files on top, every definition in them read.
+    """Return the bundled library with the users' files on top, after elaborating every definition in them.
 
-    Raises ``TextError`` for all mistakes at once, ``InputError`` where a file cannot be read.
+    Raises ``TextError``, ``TextErrors`` for several mistakes, ``InputError`` if a file cannot be read.
     """
     return _checked(tuple(sources_of(files)))
 
 
-# The studio and scripts ask many questions of the same texts.
+# The studio and scripts use the same texts for many questions.
 @lru_cache(maxsize=16)
 def _checked(sources: tuple[Source, ...]) -> Library:
     gathered = gather_files(sources)
@@ -163,8 +165,8 @@ def _checked(sources: tuple[Source, ...]) -> Library:
 
 
 def definition_errors(library: Library, sources: Sequence[Source], lost: Lost = ()) -> list[TextError]:
-    """What means nothing in the definitions of some texts, each read in the set or option that it is of."""
-    walks = ((Elaborator(x, lost=lost), definitions) for x, definitions in _homes(library, sources))
+    """Return the errors in the definitions of some texts, each elaborated in its own spec set or option."""
+    walks = ((Elaborator(x, lost=lost), definitions) for x, definitions in _in_force(library, sources))
     return [error for walk, definitions in walks for error in _errors_in_all(walk, definitions)]
 
 
@@ -172,8 +174,8 @@ def _errors_in_all(walk: Elaborator, definitions: Iterable[Definition]) -> list[
     return [error for definition in definitions for error in _errors_in(walk, definition)]
 
 
-def _homes(library: Library, sources: Sequence[Source]) -> list[tuple[Specification, list[Definition]]]:
-    """The definitions that texts make, each beside a specification in which it is in force."""
+def _in_force(library: Library, sources: Sequence[Source]) -> list[tuple[Specification, list[Definition]]]:
+    """Return the definitions of texts, each list with a specification in which it is in force."""
 
     def own(definitions: Iterable[Definition]) -> list[Definition]:
         return [x for x in definitions if source_of(library, x) in sources]
@@ -192,9 +194,9 @@ def _homes(library: Library, sources: Sequence[Source]) -> list[tuple[Specificat
 
 
 def _errors_in(walk: Elaborator, definition: Definition) -> list[TextError]:
-    """The mistakes in one definition; a group of vehicles may have to have more than one member.
+    """Return the errors in one definition, for the best of 1 to ``MOST_VEHICLES`` vehicles in a group.
 
-    What depends on the numbers that it is applied to is no mistake of it.
+    Errors that depend on the numbers of its arguments are left out.
     """
     source = source_of(walk.specification.library, definition)
     wrong: list[TextError] = []
@@ -206,13 +208,13 @@ def _errors_in(walk: Elaborator, definition: Definition) -> list[TextError]:
     if wrong:
         return wrong
     grouped = any(binding.sort == "vehicles" for binding in definition.parameters)
-    tried = [_errors_with(walk, definition, 1)]
-    while grouped and tried[-1] and len(tried) < MOST_VEHICLES:
-        tried.append(_errors_with(walk, definition, len(tried) + 1))
-    found = min(tried, key=len)
+    attempts = [_errors_with(walk, definition, 1)]
+    while grouped and attempts[-1] and len(attempts) < MOST_VEHICLES:
+        attempts.append(_errors_with(walk, definition, len(attempts) + 1))
+    fewest = min(attempts, key=len)
     if all(binding.sort in scopes.SORTS for binding in definition.parameters):
-        return found
-    return [error for error in found if not isinstance(error, ValueOfTermError)]
+        return fewest
+    return [error for error in fewest if not isinstance(error, ValueOfTermError)]
 
 
 def _errors_with(walk: Elaborator, definition: Definition, size: int) -> list[TextError]:
@@ -225,16 +227,16 @@ def _errors_with(walk: Elaborator, definition: Definition, size: int) -> list[Te
             dimension = UNITS[binding.sort][1]
             scope[binding.name] = Quantity(t.number(1, dimension), dimension)
     errors: list[TextError] = []
-    inner = replace(walk.again(), errors=errors, lost=walk.lost)
+    inner = replace(walk.for_next_claim(), errors=errors, lost=walk.lost)
     try:
         inner.body_of(definition.name, scope)
     except TextError as error:
-        errors += [] if isinstance(error, LostError) else [error]
+        errors += [] if isinstance(error, UnreadableNameError) else [error]
     return errors
 
 
 def as_diagnostic(error: TextError, text: str) -> Diagnostic:
-    """An error as a remark about the text that it is in; without an end it is about the word there."""
+    """Return an error as a diagnostic of the text; without an end, it covers the word at its position."""
     lines = text.splitlines() or [""]
     line, column = (1, 1) if error.position is None else (error.position.line, error.position.column)
     line = min(line, len(lines))
@@ -249,5 +251,5 @@ def as_diagnostic(error: TextError, text: str) -> Diagnostic:
 
 def _replaces(definition: Definition, text: str) -> Diagnostic:
     message = f"it replaces the definition of '{definition.name}' below, wherever that is used"
-    made = as_diagnostic(TextError(message, definition.at), text)
-    return replace(made, severity="info")
+    diagnostic = as_diagnostic(TextError(message, definition.at), text)
+    return replace(diagnostic, severity="info")

@@ -1,7 +1,7 @@
-"""One walk over one claim, from syntax to formula; ``library.elaborate`` has the doors to it.
+"""The elaborator, which turns syntax trees into formulas; use it through ``library.elaborate``.
 
-Applying a definition puts its body in place of the call, wrapped in ``Application``; vehicles and lanes
-are names from the start, so what comes out speaks of SV, POV and L and nothing else.
+A call of a definition becomes its body, wrapped in ``Application``. Vehicles and lanes are names from the
+start, so the result mentions SV, POV and L and nothing else.
 """
 
 import re
@@ -11,61 +11,59 @@ from fractions import Fraction
 from typing import TypeVar, assert_never
 
 from roadproof.errors import Position, TextError
-from roadproof.library import arithmetic, kinds, scopes
-from roadproof.library.notes import Entered, Known, LostError, Note
+from roadproof.library import arithmetic, mistakes, scopes
+from roadproof.library.notes import ElaborationCache, FormulaNote, UnreadableNameError, UsedDefinitions
 from roadproof.library.quantity import Quantity, Sizes
 from roadproof.library.scopes import SORTS, Free, Ref, Scope, Value, Vehicles
-from roadproof.library.specification import BUILT_IN, Specification, source_of, unknown
+from roadproof.library.specification import BUILT_IN, Specification, source_of, unknown_name
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
-from roadproof.logic.foreign_syntax import instead_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.syntax import Bounds, Definition, Expression, SignalDeclaration
 from roadproof.runtime.records import dataclass
 from roadproof.world.signals import KINDS
 from roadproof.world.units import UNITS
 
-DEEPEST_FORMULA = 100
 MOST_ERRORS = 200
-_ANY_NUMBER = Quantity(t.number(1), None)  # fits wherever a number is wrong
+_ANY_NUMBER = Quantity(t.number(1), None)  # fits in place of any wrong number
 
 A = TypeVar("A")
 
 
 @dataclass
 class Elaborator:
-    """One walk over one claim; ``home`` is set inside ``name@set(…)``, and is the walk that met it.
+    """An elaborator of one claim; inside of ``name@set(…)``, ``outer`` is the one that met it.
 
-    With ``errors`` mistakes are noted there and the walk goes on; nothing is said of names that are ``lost``,
-    because what declares them could not be read. ``notes``: where it is a list, what each expression became
-    is added to it. ``entered``: every definition that has been applied so far, also from what is ``known``.
+    With ``errors``, mistakes are added to it and elaboration goes on. ``lost``: patterns of names whose
+    declarations could not be read, which cause no errors. ``notes``: if it is a list, the formula of each
+    expression is added. ``used_definitions``: every definition applied so far, also from the cache ``known``.
     """
 
     specification: Specification
-    home: "Elaborator | None" = None
+    outer: "Elaborator | None" = None
     free: Free = field(default_factory=lambda: {"vehicle": set(), "lane": set()})
     stack: list[str] = field(default_factory=list)
     depth: int = 0
     deepest: int = 0
-    known: Known = field(default_factory=dict)
+    known: ElaborationCache = field(default_factory=dict)
     sizes: Sizes = field(default_factory=Sizes)
     errors: list[TextError] | None = None
     lost: tuple[re.Pattern[str], ...] = ()
-    notes: list[Note] | None = None
-    entered: Entered = field(default_factory=dict)
+    notes: list[FormulaNote] | None = None
+    used_definitions: UsedDefinitions = field(default_factory=dict)
 
-    def again(self) -> "Elaborator":
-        """A walk over another claim in the same specification, which knows what this one has made."""
+    def for_next_claim(self) -> "Elaborator":
+        """Return an elaborator for another claim in the same specification, with the same cache."""
         return Elaborator(self.specification, known=self.known, sizes=Sizes(self.sizes.known))
 
     # --- mistakes --------------------------------------------------------------------------------
 
-    def _noted(self, error: TextError, instead: A) -> A:
-        """``instead`` of what is wrong, where mistakes are noted; else the mistake is raised."""
+    def _record(self, error: TextError, instead: A) -> A:
+        """Record the error and return ``instead``; raise it if errors are not recorded."""
         if self.errors is None or len(self.errors) >= MOST_ERRORS:
             raise error
-        if not isinstance(error, LostError):
+        if not isinstance(error, UnreadableNameError):
             definition = self.specification.definitions[self.stack[-1]] if self.stack else None
             if definition is not None:
                 source = source_of(self.specification.library, definition)
@@ -75,27 +73,29 @@ class Elaborator:
 
     def _refuse_lost(self, name: str, at: Position) -> None:
         if any(pattern.fullmatch(name) for pattern in self.lost):
-            raise LostError(f"'{name}' could not be read", at)
+            raise UnreadableNameError(f"'{name}' could not be read", at)
 
     # --- names ---------------------------------------------------------------------------------
 
     @property
-    def _open(self) -> Free | None:
-        """Names that need no declaration: those of a claim, none in the body of a definition."""
+    def _free_names(self) -> Free | None:
+        """The names that need no declaration: those of a claim; None in the body of a definition."""
         return None if self.stack else self.free
 
-    def given(self, claim: syntax.Claim) -> Scope:
+    def claim_scope(self, claim: syntax.Claim) -> Scope:
+        """Return the scope of the declarations in front of a claim."""
         library = self.specification.library
         for binding in claim.given:
             scopes.refuse_signal(binding.name, library.signals, binding.at)
-        return scopes.scope_of(claim.given, library.parameters, self.free)
+        return scopes.claim_scope(claim.given, library.parameters, self.free)
 
     def reference(self, expression: Expression | Ref, sort: str, scope: Scope) -> Ref:
-        return scopes.reference(expression, sort, scope, self._open)
+        return scopes.reference(expression, sort, scope, self._free_names)
 
     # --- calls ---------------------------------------------------------------------------------
 
     def call(self, call: syntax.Call, scope: Scope) -> Formula | Quantity:
+        """Elaborate a call of a definition, a signal or a built-in function. Raises ``TextError``."""
         name, _, qualifier = call.name.partition("@")
         if qualifier and qualifier != self.specification.set_name:
             return self._in_other_set(call, name, qualifier, scope)
@@ -104,28 +104,22 @@ class Elaborator:
             return self._built_in(call, name, scope)
         definition = self.specification.definitions.get(name)
         if definition is None and name in self.specification.library.signals:
-            return self._own(self.specification.library.signals[name], call, scope)
+            return self._signal(self.specification.library.signals[name], call, scope)
         if definition is None:
-            everything = [*self.specification.definitions, *self.specification.library.signals, *BUILT_IN]
-            raise TextError(unknown("definition", name, everything), call.at, instead_of(name))
+            raise mistakes.unknown_call(name, self.specification, call.at)
         bound = self._bind(definition, call, scope)
         return self.apply(definition, bound, call.at)
 
-    def _own(self, signal: SignalDeclaration, call: syntax.Call, scope: Scope) -> Formula | Quantity:
-        wanted = 1 if signal.vehicle else 0
-        if len(call.arguments) != wanted:
-            raise TextError(
-                f"'{signal.name}' takes {wanted} argument{'' if wanted == 1 else 's'} "
-                f"but got {len(call.arguments)}",
-                call.at,
-                f"It is {signal.name}{f'({signal.vehicle}: vehicle)' if wanted else ''}: {signal.sort}.",
-            )
-        vehicle = self.reference(call.arguments[0], "vehicle", scope).name if wanted else ""
-        return arithmetic.own(signal, vehicle)
+    def _signal(self, signal: SignalDeclaration, call: syntax.Call, scope: Scope) -> Formula | Quantity:
+        arity = 1 if signal.vehicle else 0
+        declaration = f"{signal.name}{f'({signal.vehicle}: vehicle)' if arity else ''}: {signal.sort}"
+        mistakes.refuse_arity(signal.name, arity, call, f"It is {declaration}.")
+        vehicle = self.reference(call.arguments[0], "vehicle", scope).name if arity else ""
+        return arithmetic.custom_signal_value(signal, vehicle)
 
     def _in_other_set(self, call: syntax.Call, name: str, qualifier: str, scope: Scope) -> Formula | Quantity:
         if qualifier not in self.specification.library.sets:
-            raise TextError(unknown("spec set", qualifier, self.specification.library.sets), call.at)
+            raise TextError(unknown_name("spec set", qualifier, self.specification.library.sets), call.at)
         inner = Elaborator(
             self.specification.in_set(qualifier),
             self,
@@ -136,69 +130,70 @@ class Elaborator:
             lost=self.lost,
             notes=self.notes,
         )
-        made = inner.call(syntax.Call(name, call.arguments, call.at), scope)
+        result = inner.call(syntax.Call(name, call.arguments, call.at), scope)
         self.deepest = max(self.deepest, inner.deepest)
-        self.entered = self.entered | inner.entered
-        return made
+        self.used_definitions = self.used_definitions | inner.used_definitions
+        return result
 
     def apply(self, definition: Definition, bound: Scope, at: Position) -> Formula | Quantity:
-        around = self.entered
-        made, height, inside = self._known_body(definition, bound, at)
+        """Return a definition applied to values, and record the definitions that it uses."""
+        used_before = self.used_definitions
+        body, height, used_inside = self._known_body(definition, bound, at)
         self.deepest = max(self.deepest, self.depth + height)
-        self.entered = around | inside
-        if isinstance(made, Quantity):
-            return made
-        if self.home is not None:
-            before = list(self._around())
-            here = self.home.apply(self.home.specification.definitions[definition.name], bound, at)
-            if isinstance(here, f.Application) and here.body == made:
-                self.entered = around
-                return here
-            for walk, entered in before:  # it was only compared
-                walk.entered = entered
+        self.used_definitions = used_before | used_inside
+        if isinstance(body, Quantity):
+            return body
+        if self.outer is not None:
+            outer_used = list(self._outer_elaborators())
+            ours = self.outer.apply(self.outer.specification.definitions[definition.name], bound, at)
+            if isinstance(ours, f.Application) and ours.body == body:
+                self.used_definitions = used_before
+                return ours
+            for walk, used_definitions in outer_used:  # undo: the outer body was only compared
+                walk.used_definitions = used_definitions
             return f.Application(
-                f"{definition.name}@{self.specification.set_name}", scopes.names_in(bound), made
+                f"{definition.name}@{self.specification.set_name}", scopes.names_in(bound), body
             )
-        return f.Application(definition.name, scopes.names_in(bound), made)
+        return f.Application(definition.name, scopes.names_in(bound), body)
 
     def _known_body(
         self, definition: Definition, bound: Scope, at: Position
-    ) -> tuple[Formula | Quantity, int, Entered]:
-        """The body of a definition applied to values, how deep it is nested, and what it has entered."""
+    ) -> tuple[Formula | Quantity, int, UsedDefinitions]:
+        """Return a definition applied to values, its nesting depth, and the definitions that it uses."""
         key = (definition.name, self.specification.set_name, tuple(bound.values()))
         if key not in self.known:
             if definition.name in self.stack:
                 cycle = " -> ".join([*self.stack[self.stack.index(definition.name) :], definition.name])
                 raise TextError(f"'{definition.name}' is defined by itself: {cycle}", at)
-            before, around = self.deepest, self.entered
+            before, used_before = self.deepest, self.used_definitions
             self.deepest = self.depth
-            self.entered = {(self.specification.set_name, definition.name): definition}
+            self.used_definitions = {(self.specification.set_name, definition.name): definition}
             try:
                 body = self.body_of(definition.name, bound)
-                self.known[key] = body, self.deepest - self.depth, self.entered
+                self.known[key] = body, self.deepest - self.depth, self.used_definitions
             finally:
-                self.entered = around
+                self.used_definitions = used_before
             self.deepest = max(before, self.deepest)
         return self.known[key]
 
-    def _around(self) -> Iterator[tuple["Elaborator", Entered]]:
-        """The walks that met this one, each with what it has entered so far."""
-        walk = self.home
+    def _outer_elaborators(self) -> Iterator[tuple["Elaborator", UsedDefinitions]]:
+        """Yield the outer elaborators, each with the definitions that it has applied so far."""
+        walk = self.outer
         while walk is not None:
-            yield walk, walk.entered
-            walk = walk.home
+            yield walk, walk.used_definitions
+            walk = walk.outer
 
     def body_of(self, name: str, scope: Scope) -> Formula | Quantity:
-        """The body of a definition, with mistakes in it located in its own text."""
+        """Return the body of a definition, with errors located in its own text."""
         definition = self.specification.definitions[name]
         self.stack.append(name)
         try:
             for binding in definition.parameters:
                 scopes.check_sort(binding)
-            made = self.expression(definition.body, scope)
+            body = self.expression(definition.body, scope)
             if name in self.specification.library.signals:
-                arithmetic.check_derived(self.specification.library.signals[name], made, definition.body.at)
-            return made
+                arithmetic.check_derived(self.specification.library.signals[name], body, definition.body.at)
+            return body
         except TextError as error:
             source = source_of(self.specification.library, definition)
             raise error.locate(source.name, source.text) from None
@@ -206,69 +201,63 @@ class Elaborator:
             self.stack.pop()
 
     def _bind(self, definition: Definition, call: syntax.Call, scope: Scope) -> dict[str, Value]:
-        """What each parameter of a definition stands for in a call."""
+        """Return the value of each parameter of a definition in a call."""
         bound: dict[str, Value] = {}
-        for binding, given in scopes.deal_out(definition, call, scope):
+        for binding, arguments in scopes.assign_arguments(definition, call, scope):
             if binding.sort == "vehicles":
-                refs = [self.reference(argument, "vehicle", scope) for argument in given]
+                refs = [self.reference(argument, "vehicle", scope) for argument in arguments]
                 bound[binding.name] = Vehicles(tuple(ref.name for ref in refs))
             elif binding.sort in SORTS:
-                bound[binding.name] = self.reference(given[0], binding.sort, scope)
-            elif isinstance(given[0], Ref):
-                raise TextError(f"'{given[0].name}' is a vehicle; a number is expected here", call.at)
+                bound[binding.name] = self.reference(arguments[0], binding.sort, scope)
+            elif isinstance(arguments[0], Ref):
+                raise TextError(f"'{arguments[0].name}' is a vehicle; a number is expected here", call.at)
             else:
                 scopes.check_sort(binding)
-                number = self.term(given[0], scope)
-                bound[binding.name] = arithmetic.argument(number, binding, definition, given[0].at)
+                number = self.term(arguments[0], scope)
+                bound[binding.name] = arithmetic.argument(number, binding, definition, arguments[0].at)
         return bound
 
     # --- expressions ---------------------------------------------------------------------------
 
     def formula(self, expression: Expression, scope: Scope) -> Formula:
+        """Elaborate an expression that must be a formula."""
         try:
-            made = self.expression(expression, scope)
-            if not isinstance(made, Quantity):
-                return made
+            result = self.expression(expression, scope)
+            if not isinstance(result, Quantity):
+                return result
             raise TextError(
                 "a formula is expected here, but this is a number",
                 expression.at,
                 "Compare it with something.",
             )
         except TextError as error:
-            return self._noted(error, f.TRUE)
+            return self._record(error, f.TRUE)
 
     def term(self, expression: Expression, scope: Scope) -> Quantity:
+        """Elaborate an expression that must be a number."""
         try:
-            made = self.expression(expression, scope)
-            if isinstance(made, Quantity):
-                return made
+            result = self.expression(expression, scope)
+            if isinstance(result, Quantity):
+                return result
             raise TextError("a number is expected here, but this is a formula", expression.at)
         except TextError as error:
-            return self._noted(error, _ANY_NUMBER)
+            return self._record(error, _ANY_NUMBER)
 
     def expression(self, expression: Expression, scope: Scope) -> Formula | Quantity:
+        """Elaborate an expression; depth and size are limited."""
         self.depth += 1
         try:
             self.deepest = max(self.deepest, self.depth)
-            self.refuse_deeper(self.depth, expression.at)
+            mistakes.refuse_deeper(self.depth, expression.at)
             self.sizes.count_reading(expression.at)
-            made = self._expression(expression, scope)
-            self.sizes.check(made.term if isinstance(made, Quantity) else made, expression.at)
-            if self.notes is not None and not isinstance(made, Quantity):
-                inside = self.specification.definitions[self.stack[-1]] if self.stack else None
-                self.notes.append(Note(inside, expression.at, made))
-            return made
+            result = self._expression(expression, scope)
+            self.sizes.check(result.term if isinstance(result, Quantity) else result, expression.at)
+            if self.notes is not None and not isinstance(result, Quantity):
+                definition = self.specification.definitions[self.stack[-1]] if self.stack else None
+                self.notes.append(FormulaNote(definition, expression.at, result))
+            return result
         finally:
             self.depth -= 1
-
-    def refuse_deeper(self, depth: int, at: Position) -> None:
-        """Raises ``TextError`` where expressions are nested deeper than allowed."""
-        if depth > DEEPEST_FORMULA:
-            raise TextError(
-                f"definitions and formula together are nested deeper than {DEEPEST_FORMULA}",
-                at,
-                "Look for a chain of definitions that only call each other.",
-            )
 
     def _expression(self, expression: Expression, scope: Scope) -> Formula | Quantity:
         match expression:
@@ -285,8 +274,8 @@ class Elaborator:
             case syntax.Prefix(_, body, at):
                 return arithmetic.negative(self.term(body, scope), at)
             case syntax.Chain(op, parts, _):
-                made = [self.formula(p, scope) for p in parts]
-                return f.conjunction(*made) if op == "and" else f.disjunction(*made)
+                formulas = [self.formula(p, scope) for p in parts]
+                return f.conjunction(*formulas) if op == "and" else f.disjunction(*formulas)
             case syntax.Binary():
                 return self._binary(expression, scope)
             case syntax.Temporal(op, bounds, left, right, _):
@@ -294,7 +283,7 @@ class Elaborator:
                 goal = self.formula(right, scope)
                 match op:
                     case "U":
-                        assert left is not None  # the grammar
+                        assert left is not None  # the grammar requires it
                         return f.Until(self.formula(left, scope), interval, goal)
                     case "F":
                         return f.Eventually(interval, goal)
@@ -309,9 +298,10 @@ class Elaborator:
         value = scope.get(name)
         if isinstance(value, Quantity):
             return value
-        sort = (
-            scopes.sort_of(value) if value is not None else scopes.sort_of_free(name) if self._open else None
-        )
+        if value is not None:
+            sort: str | None = scopes.sort_of(value)
+        else:
+            sort = scopes.sort_of_free(name) if self._free_names else None
         if sort is not None:
             raise TextError(f"'{name}' is a {sort}; a formula or number is expected here", at)
         declared = self.specification.library.parameters.get(name)
@@ -324,24 +314,26 @@ class Elaborator:
         self._refuse_lost(name, at)
         if signal is not None or name in self.specification.definitions:
             raise TextError(f"'{name}' needs its arguments", at, f"Write {name}(…).")
-        numbers = [n for n, v in scope.items() if isinstance(v, Quantity)]
-        library = self.specification.library
-        known = [*library.parameters, *library.signals, *self.specification.definitions, *numbers]
-        raise TextError(unknown("parameter or definition", name, known), at, instead_of(name))
+        raise mistakes.unknown_operand(name, self.specification, scope, at)
 
     def _binary(self, expression: syntax.Binary, scope: Scope) -> Formula | Quantity:
-        op, at = expression.op, expression.at
-        if op == "->" or op == "<->":
-            join = f.implication if op == "->" else f.equivalence
-            return join(self.formula(expression.left, scope), self.formula(expression.right, scope))
-        if op in arithmetic.COMPARISONS and (
-            syntax.is_kind(expression.left) or syntax.is_kind(expression.right)
-        ):
-            return kinds.compare(expression, lambda call: self._whose_kind(call, scope))
-        left, right = self.term(expression.left, scope), self.term(expression.right, scope)
-        if op in arithmetic.COMPARISONS:
-            return arithmetic.compare(op, left, right, at)
-        return arithmetic.combine(op, left, right, self.specification.library.parameters, at)
+        op, left, right, at = expression.op, expression.left, expression.right, expression.at
+        match op:
+            case "->":
+                return f.implication(self.formula(left, scope), self.formula(right, scope))
+            case "<->":
+                return f.equivalence(self.formula(left, scope), self.formula(right, scope))
+            case "<" | "<=" | ">" | ">=" | "=" | "!=":
+                if syntax.is_kind(left) or syntax.is_kind(right):
+                    from roadproof.library import kinds  # here: few formulas compare kinds
+
+                    return kinds.compare(expression, lambda call: self._whose_kind(call, scope))
+                return arithmetic.compare(op, self.term(left, scope), self.term(right, scope), at)
+            case "+" | "-" | "*" | "/" | "^":
+                parameters = self.specification.library.parameters
+                return arithmetic.combine(op, self.term(left, scope), self.term(right, scope), parameters, at)
+            case _:
+                assert_never(op)
 
     def _whose_kind(self, call: Expression, scope: Scope) -> str:
         if not isinstance(call, syntax.Call) or len(call.arguments) != 1:
@@ -349,6 +341,7 @@ class Elaborator:
         return self.reference(call.arguments[0], "vehicle", scope).name
 
     def interval(self, bounds: Bounds | None, scope: Scope) -> f.Interval:
+        """Return the interval of a temporal operator; [0, inf] without bounds."""
         if bounds is None:
             return f.FOREVER
         before = len(self.errors or ())
@@ -367,11 +360,11 @@ class Elaborator:
     def _quantified(self, expression: syntax.Quantified, scope: Scope) -> Formula:
         variable = expression.variable
         scopes.refuse_signal(variable, self.specification.library.signals, expression.at)
-        vehicles = scopes.vehicles_in(expression.domain, scope, self._open)
+        vehicles = scopes.vehicles_in(expression.domain, scope, self._free_names)
         if vehicles is not None:
-            made = [self.formula(expression.body, {**scope, variable: v}) for v in vehicles]
-            return f.conjunction(*made) if expression.kind == "every" else f.disjunction(*made)
-        domain = scopes.domain_of(expression.domain, scope, self._open)
+            formulas = [self.formula(expression.body, {**scope, variable: v}) for v in vehicles]
+            return f.conjunction(*formulas) if expression.kind == "every" else f.disjunction(*formulas)
+        domain = scopes.domain_of(expression.domain, scope, self._free_names)
         sort = "lane" if domain.kind in ("lanes", "adjacent") else "lanelet"
         taken = {v.name for v in scope.values() if isinstance(v, Ref)} | set().union(*self.free.values())
         unique = variable
@@ -381,7 +374,6 @@ class Elaborator:
         return (f.Every if expression.kind == "every" else f.Some)(unique, domain, body)
 
     def _built_in(self, call: syntax.Call, name: str, scope: Scope) -> Formula | Quantity:
-        count = len(call.arguments)
         if name in ("lanes", "lanelets", "zone", "adjacentLanes"):
             raise TextError(f"'{name}' is a domain: write some x in {name}…", call.at)
         if name in ("max", "min"):
@@ -390,11 +382,7 @@ class Elaborator:
             return arithmetic.extremum(name, [self.term(a, scope) for a in call.arguments], call.at)
         if name == "kind":
             raise TextError("a kind is no number", call.at, f"Compare it: kind(SV) = {KINDS[1]}.")
-        wanted = 2 if name == "occ" else 1
-        if count != wanted:
-            raise TextError(
-                f"'{name}' takes {wanted} argument{'s' if wanted > 1 else ''} but got {count}", call.at
-            )
+        mistakes.refuse_arity(name, 2 if name == "occ" else 1, call)
         first = call.arguments[0]
         if name == "occ":
             vehicle = self.reference(first, "vehicle", scope)

@@ -11,10 +11,11 @@ from roadproof.world.signals import KINDS
 
 
 def compare(expression: syntax.Binary, vehicle_of: Callable[[Expression], str]) -> Formula:
-    """The formula of a comparison with ``kind(a)`` on at least one side; < and >= go by the order of kinds.
+    """Return the formula of a comparison with ``kind(a)`` on at least one side; < and >= use the order of
+    kinds.
 
-    ``vehicle_of`` gives the name of the vehicle in ``kind(a)``. Raises ``TextError`` where the other side
-    is no kind, or the comparison is not defined for kinds.
+    ``vehicle_of`` returns the name of the vehicle in ``kind(a)``. Raises ``TextError`` if the other side is
+    no kind, or the comparison is not defined for kinds.
     """
     left, right, op = expression.left, expression.right, expression.op
     if not syntax.is_kind(left):
@@ -22,14 +23,14 @@ def compare(expression: syntax.Binary, vehicle_of: Callable[[Expression], str]) 
     vehicle = vehicle_of(left)
     if syntax.is_kind(right) and op in ("=", "!="):
         other = vehicle_of(right)
-        alike = (f.And((custom_names.is_kind(vehicle, k), custom_names.is_kind(other, k))) for k in KINDS)
-        same = f.disjunction(*alike)
+        same_kind = (f.And((custom_names.is_kind(vehicle, k), custom_names.is_kind(other, k))) for k in KINDS)
+        same = f.disjunction(*same_kind)
         return same if op == "=" else f.negation(same)
     kind = next((k for k in KINDS if isinstance(right, syntax.Name) and right.name == k), None)
     if kind is None:
-        told = right.name if isinstance(right, syntax.Name | syntax.Call) else "this"
+        shown = right.name if isinstance(right, syntax.Name | syntax.Call) else "this"
         raise TextError(
-            f"kind({vehicle}) is compared with '{told}', which is no kind of vehicle",
+            f"kind({vehicle}) is compared with '{shown}', which is no kind of vehicle",
             right.at,
             f"Kinds are {', '.join(KINDS)}: write kind({vehicle}) = {KINDS[1]}.",
         )

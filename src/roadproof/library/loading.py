@@ -1,4 +1,4 @@
-"""Specification texts to a library: files read, statements put into their mappings, mistakes gathered."""
+"""Loading of specification texts into a library: parse files, collect statements, gather all errors."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping
@@ -14,18 +14,16 @@ from roadproof.library.specification import (
     ROLE,
     Library,
     Source,
-    is_within,
     key_of,
     on_request,
     read_specification,
-    unknown,
+    satisfies_bound,
+    unknown_name,
 )
 from roadproof.logic import syntax
 from roadproof.logic.grammar import version
-from roadproof.logic.instances import instances
-from roadproof.logic.parse import parse_bundled, parse_library
-from roadproof.logic.recover import ParseResult, parse_pieces
-from roadproof.runtime.cache import remembered
+from roadproof.logic.parse import ParseResult, parse_bundled, parse_library
+from roadproof.runtime.cache import cached
 from roadproof.runtime.records import dataclass
 
 Parse: TypeAlias = Callable[[str, str], tuple[syntax.Statement, ...]]
@@ -33,39 +31,39 @@ Parse: TypeAlias = Callable[[str, str], tuple[syntax.Statement, ...]]
 
 @cache
 def bundled_library() -> Library:
-    """The library that comes with roadproof (``library/sets/*.spec``), remembered from run to run."""
+    """Return the library that comes with roadproof (``library/sets/*.spec``), from the cache on disk."""
     files = sorted((Path(__file__).parent / "sets").glob("*.spec"))
     sources = [Source(f.name, f.read_text("utf-8")) for f in files]
     code = (Path(__file__).with_name(name).read_text("utf-8") for name in ("loading.py", "specification.py"))
     made_of = "\0".join((version(), *code, *(text for x in sources for text in (x.name, x.text))))
-    return remembered("library", made_of.encode(), lambda: build_library(sources, parse=parse_library))
+    return cached("library", made_of.encode(), lambda: build_library(sources, parse=parse_library))
 
 
 def load_library(files: Iterable[Path | Source] = ()) -> Library:
-    """The bundled library, with the users' files or texts on top: their definitions replace or add."""
+    """Return the bundled library with the users' files or texts on top: their definitions replace or add."""
     extra = tuple(sources_of(files))
     return _library_with(extra) if extra else bundled_library()
 
 
 @lru_cache(maxsize=8)
 def _library_with(extra: tuple[Source, ...]) -> Library:
-    """The bundled library with texts on top; kept, because a check asks for the same texts many times."""
+    """Return the bundled library with texts on top; cached, as a check needs the same texts many times."""
     return replace(build_library(extra, bundled_library()), files=extra)
 
 
 def sources_of(files: Iterable[Path | Source]) -> list[Source]:
-    """Texts, read from files where they are none yet. Raises ``InputError``."""
+    """Return texts as they are, and files as texts. Raises ``InputError``."""
     return [file if isinstance(file, Source) else read_specification(file) for file in files]
 
 
 @cache
 def _texts_on_request() -> dict[str, str]:
-    """The names of the files that come with roadproof and are read where they are named, by text."""
+    """Return the names of the shipped files that are read when they are named, by text."""
     return {file.read_text("utf-8"): file.name for file in on_request().values()}
 
 
 def _statements(text: str, name: str) -> tuple[syntax.Statement, ...]:
-    """The statements of a text, those of roadproof's own files from the cache. Raises ``TextError``."""
+    """Return the statements of a text, from the cache for roadproof's own files. Raises ``TextError``."""
     shipped = _texts_on_request().get(text)
     return parse_library(text, name) if shipped is None else parse_bundled(text, shipped)
 
@@ -73,54 +71,57 @@ def _statements(text: str, name: str) -> tuple[syntax.Statement, ...]:
 def build_library(
     sources: Iterable[Source], below: Library | None = None, parse: Parse = _statements
 ) -> Library:
-    """Put statements into their mappings, as ``parse`` reads them.
+    """Return the library of some texts, on top of ``below``; ``parse`` parses a text.
 
-    Raises ``TextError`` for all that does not parse, is there twice, or names what does not exist.
+    Raises ``TextError`` for syntax errors and for names that are declared twice or unknown; ``TextErrors``
+    for several mistakes.
     """
-    gathered = gather({source: _parsed(source, parse) for source in sources}, below)
+    gathered = gather({source: _parse(source, parse) for source in sources}, below)
     raise_all(gathered.errors)
     return gathered.library
 
 
-def _parsed(source: Source, parse: Parse = _statements) -> ParseResult:
-    """What is read of a text; the whole at once, which is quicker where it has no mistake."""
+def _parse(source: Source, parse: Parse = _statements) -> ParseResult:
+    """Parse a text as a whole, which is quicker, and in pieces only if it has a mistake."""
     try:
         return ParseResult(parse(source.text, source.name))
     except TextError as error:
+        from roadproof.logic.recover import parse_pieces  # here: for texts with mistakes alone
+
         pieces = parse_pieces(source.text, source.name)
         return pieces if pieces.errors else replace(pieces, errors=(error,))
 
 
 @dataclass(frozen=True)
-class ReadOutcome:
-    """What could be read of texts, all that could not, in their order, and how names look that are lost."""
+class GatheredLibrary:
+    """The library of all statements that could be read, all errors in order, and patterns of lost names."""
 
     library: Library
     errors: tuple[TextError, ...] = ()
     lost: tuple[re.Pattern[str], ...] = ()
 
 
-def gather(readings: Mapping[Source, ParseResult], below: Library | None = None) -> ReadOutcome:
-    """What was read of texts, put into its mappings."""
+def gather(readings: Mapping[Source, ParseResult], below: Library | None = None) -> GatheredLibrary:
+    """Collect the parsed statements of texts in a library."""
     building, errors, lost = _Builder(below or Library()), list[TextError](), list[re.Pattern[str]]()
     for source, parsed in readings.items():
         errors += sorted([*parsed.errors, *building.add(parsed.statements, source)], key=place_of)
         lost += parsed.lost
     lost += (re.compile(re.escape(name)) for name in building.refused)
-    return ReadOutcome(building.library(), tuple(errors), tuple(lost))
+    return GatheredLibrary(building.library(), tuple(errors), tuple(lost))
 
 
-def gather_files(files: Iterable[Path | Source]) -> ReadOutcome:
-    """As ``load_library``, with all that is wrong. Raises ``InputError`` where a file is no text."""
+def gather_files(files: Iterable[Path | Source]) -> GatheredLibrary:
+    """Return ``load_library`` together with all errors. Raises ``InputError`` if a file is no text."""
     extra = sources_of(files)
     if not extra:
-        return ReadOutcome(bundled_library())
-    gathered = gather({source: _parsed(source) for source in extra}, bundled_library())
+        return GatheredLibrary(bundled_library())
+    gathered = gather({source: _parse(source) for source in extra}, bundled_library())
     return replace(gathered, library=replace(gathered.library, files=tuple(extra)))
 
 
 def place_of(error: TextError) -> tuple[int, int]:
-    """Line and column of an error, to sort by."""
+    """Return line and column of an error, as a key to sort by."""
     return (0, 0) if error.position is None else (error.position.line, error.position.column)
 
 
@@ -136,7 +137,7 @@ class _Builder:
         return Library(**{name: table for name, table in vars(self).items() if name != "refused"})
 
     def add(self, statements: Iterable[syntax.Statement], source: Source) -> list[TextError]:
-        """Add what a text says, and tell what of it cannot be added."""
+        """Add the statements of a text, and return the errors of those that cannot be added."""
         fresh: set[tuple[str, str]] = set()
         blocks: list[syntax.SetBlock | syntax.WhenBlock] = []
         errors: list[TextError] = []
@@ -148,7 +149,7 @@ class _Builder:
                 self._add(statement, fresh, source)
             except TextError as error:
                 errors.append(error.locate(source.name, source.text))
-                self.refused += _declares(statement)
+                self.refused += _declared_names(statement)
         for block in blocks:
             try:
                 self._override(block, fresh, source, errors)
@@ -159,8 +160,8 @@ class _Builder:
     def _add(self, statement: syntax.Statement, fresh: set[tuple[str, str]], source: Source) -> None:
         match statement:
             case syntax.ParameterDeclaration():
-                _once(fresh, "parameter", statement.name, statement.at)
-                if not is_within(statement.bound, statement.value):
+                _refuse_repetition(fresh, "parameter", statement.name, statement.at)
+                if not satisfies_bound(statement.bound, statement.value):
                     raise TextError(
                         f"{statement.name}={statement.value} {statement.unit}: it is declared with "
                         f"{statement.name} {statement.bound} 0",
@@ -172,30 +173,32 @@ class _Builder:
                 self.parameters[statement.name] = statement
                 self.sources[key_of(statement)] = source
             case syntax.OptionDeclaration():
-                _once(fresh, "option", statement.name, statement.at)
+                _refuse_repetition(fresh, "option", statement.name, statement.at)
                 self.options[statement.name] = statement
             case syntax.Definition():
                 self._define(statement, fresh, source)
             case syntax.SignalDeclaration():
                 self._declare(statement, fresh, source)
             case syntax.EachBlock():
-                for definition in instances(statement):
+                from roadproof.logic.instances import expand_each  # here: few texts have such blocks
+
+                for definition in expand_each(statement):
                     self._define(definition, fresh, source)
             case syntax.SetBlock() | syntax.WhenBlock():
                 raise AssertionError("blocks are added last")
             case syntax.LaneDeclaration():
                 for number in statement.scenarios:
-                    _once(fresh, "lane of scenario", str(number), statement.at)
+                    _refuse_repetition(fresh, "lane of scenario", str(number), statement.at)
                     self.lanes[number] = statement
             case syntax.TitleDeclaration():
                 for number in statement.scenarios:
-                    _once(fresh, "title of scenario", str(number), statement.at)
+                    _refuse_repetition(fresh, "title of scenario", str(number), statement.at)
                     self.titles[number] = (statement, source)
             case _:
                 assert_never(statement)
 
     def _define(self, definition: syntax.Definition, fresh: set[tuple[str, str]], source: Source) -> None:
-        _once(fresh, "definition", definition.name, definition.at)
+        _refuse_repetition(fresh, "definition", definition.name, definition.at)
         if definition.name in BUILT_IN:
             raise TextError(f"'{definition.name}' is built in and cannot be defined", definition.at)
         if definition.name in self.signals:
@@ -208,9 +211,9 @@ class _Builder:
         self.sources[key_of(definition)] = source
 
     def _declare(self, signal: syntax.SignalDeclaration, fresh: set[tuple[str, str]], source: Source) -> None:
-        """An own signal; one that is derived is a definition whose body has to be of its unit."""
+        """Add a custom signal; a derived one is also a definition, whose body must have its unit."""
         name, at = signal.name, signal.at
-        _once(fresh, "signal", name, at)
+        _refuse_repetition(fresh, "signal", name, at)
         if name in BUILT_IN:
             raise TextError(f"'{name}' is built in and cannot be declared", at)
         if ROLE.fullmatch(name) or name in NOT_A_COLUMN:
@@ -236,24 +239,24 @@ class _Builder:
         inside: set[tuple[str, str]] = set()
         for definition in block.definitions:
             try:
-                _once(inside, "definition", definition.name, definition.at)
+                _refuse_repetition(inside, "definition", definition.name, definition.at)
                 if definition.name not in self.definitions:
-                    message = unknown("definition", definition.name, self.definitions)
+                    message = unknown_name("definition", definition.name, self.definitions)
                     raise TextError(f"an override needs something to replace: {message}", definition.at)
                 self.sources[key_of(definition)] = source
             except TextError as error:
                 errors.append(error.locate(source.name, source.text))
-                self.refused += _declares(definition)
+                self.refused += _declared_names(definition)
         if isinstance(block, syntax.SetBlock):
-            _once(fresh, "set", block.name, block.at)
+            _refuse_repetition(fresh, "set", block.name, block.at)
             if block.parent and block.parent not in self.sets:
-                raise TextError(unknown("spec set", block.parent, self.sets), block.at)
+                raise TextError(unknown_name("spec set", block.parent, self.sets), block.at)
             self.sets[block.name] = block
         else:
             if block.option not in self.options:
-                raise TextError(unknown("option", block.option, self.options), block.at)
+                raise TextError(unknown_name("option", block.option, self.options), block.at)
             if block.value not in self.options[block.option].values:
-                message = unknown(
+                message = unknown_name(
                     f"value of option {block.option}", block.value, self.options[block.option].values
                 )
                 raise TextError(message, block.at)
@@ -261,12 +264,12 @@ class _Builder:
             self.variants[key] = (*self.variants.get(key, ()), *block.definitions)
 
 
-def _declares(statement: syntax.Statement) -> list[str]:
+def _declared_names(statement: syntax.Statement) -> list[str]:
     declares = syntax.Definition | syntax.ParameterDeclaration | syntax.SignalDeclaration
     return [statement.name] if isinstance(statement, declares) else []
 
 
-def _once(fresh: set[tuple[str, str]], kind: str, name: str, at: Position) -> None:
+def _refuse_repetition(fresh: set[tuple[str, str]], kind: str, name: str, at: Position) -> None:
     if (kind, name) in fresh:
         raise TextError(f"{kind} '{name}' is given twice", at, "Remove or rename one of the two.")
     fresh.add((kind, name))

@@ -1,4 +1,4 @@
-"""Facts that elaboration notes on its way: which definitions a formula is made of, and from which text."""
+"""Records of elaboration: the definitions that a formula uses, and the formula of each expression."""
 
 from typing import TypeAlias
 
@@ -9,21 +9,21 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.syntax import Definition
 from roadproof.runtime.records import dataclass
 
-Entered: TypeAlias = dict[tuple[str, str], Definition]
+UsedDefinitions: TypeAlias = dict[tuple[str, str], Definition]
 """Definitions by set and name, in reading order, whose bodies are part of a formula."""
-Known: TypeAlias = dict[tuple[str, str, tuple[Value, ...]], tuple[Formula | Quantity, int, Entered]]
-"""What definitions of a set mean, applied to values, how deep expressions are nested in each, and which
-definitions each has entered.
-"""
+ElaborationCache: TypeAlias = dict[
+    tuple[str, str, tuple[Value, ...]], tuple[Formula | Quantity, int, UsedDefinitions]
+]
+"""Elaborated bodies by definition, set and arguments, each with its nesting depth and its definitions."""
 
 
-class LostError(TextError):
-    """What was asked for is declared by a text that could not be read, of which is told elsewhere."""
+class UnreadableNameError(TextError):
+    """The error for a name whose declaration could not be parsed; that is reported at the declaration."""
 
 
 @dataclass(frozen=True)
-class Note:
-    """That an expression at a place, in the text of a definition or of the claim (None), became a formula."""
+class FormulaNote:
+    """The formula of an expression at a place in a definition, or in the claim (None)."""
 
     definition: Definition | None
     at: Position

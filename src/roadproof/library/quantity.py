@@ -1,8 +1,8 @@
-"""Terms with their dimensions, and how large a formula is, counted without writing it out.
+"""Terms with their dimensions, and the size of a formula, counted without writing it out.
 
-Definitions are put in place of their calls, and calls share what they have in common; so forty definitions
-that each use the one before twice are a small object and a formula of 2^40 parts. Whoever walks through it
-would never end, so it is refused as soon as it is made.
+Calls are replaced by the bodies of definitions, which share sub-trees. Forty definitions that each use the
+one before twice are therefore a small object, and a formula of 2^40 parts. To walk through it would never
+end, so it is refused as soon as it is made.
 """
 
 from collections.abc import Iterable
@@ -22,14 +22,17 @@ SECONDS: Dimension = (0, 1)
 
 @dataclass(frozen=True)
 class Quantity:
-    """A term with its dimension; ``dimension`` None fits every dimension (the literal 0)."""
+    """A term with its dimension; None fits every dimension (the literal 0)."""
 
     term: t.Term
     dimension: Dimension | None
 
 
 def same_dimension(left: Quantity, right: Quantity, what: str, at: Position) -> Dimension | None:
-    """The dimension that both have; ``what`` is done with them. Raises ``TextError`` where they differ."""
+    """Return the common dimension of two quantities. Raises ``TextError`` if they differ.
+
+    ``what``: the participle of the operation in the message, such as "added".
+    """
     if left.dimension is None or right.dimension is None or left.dimension == right.dimension:
         return right.dimension if left.dimension is None else left.dimension
     plain = t.constant_value(right.term) is not None or t.constant_value(left.term) is not None
@@ -45,34 +48,34 @@ def same_dimension(left: Quantity, right: Quantity, what: str, at: Position) -> 
 
 
 def unit_name(dimension: Dimension | None) -> str:
-    """A dimension as a unit: (1, -2) is m/s^2."""
+    """Return a dimension as a unit: (1, -2) is m/s^2."""
     if dimension is None or dimension == (0, 0):
         return "no unit"
     return SI.get(dimension) or f"m^{dimension[0]}*s^{dimension[1]}"
 
 
 def product_dimension(left: Quantity, right: Quantity, sign: int) -> Dimension | None:
-    """The dimension of a product (``sign`` 1) or a quotient (-1); None where one has none."""
+    """Return the dimension of a product (``sign`` 1) or a quotient (-1); None if one of them has none."""
     if left.dimension is None or right.dimension is None:
         return None
     return (left.dimension[0] + sign * right.dimension[0], left.dimension[1] + sign * right.dimension[1])
 
 
-LARGEST_FORMULA = 400_000  # parts; the largest that roadproof writes itself has 150,000
-MOST_READ = 100_000  # expressions that are read for one claim; there, 4,000
+LARGEST_FORMULA = 400_000  # parts; roadproof's own largest formula has 150,000
+MOST_READ = 100_000  # expressions for one claim; roadproof's own claims need 4,000
 
 Tree: TypeAlias = "Formula | Term"
 
 
 @dataclass
 class Sizes:
-    """Counts what is made while one claim is read; what was counted is kept, so that no id is used twice."""
+    """A counter of formula parts for one elaboration; it keeps counted trees, so that no id is reused."""
 
     known: dict[int, tuple[int, Tree]] = field(default_factory=dict)
     read: int = 0
 
     def count_reading(self, at: Position) -> None:
-        """One more expression is read. Raises ``TextError`` beyond ``MOST_READ``."""
+        """Count one more expression. Raises ``TextError`` beyond ``MOST_READ``."""
         self.read += 1
         if self.read > MOST_READ:
             raise TextError(
@@ -82,7 +85,7 @@ class Sizes:
             )
 
     def check(self, tree: Tree, at: Position) -> None:
-        """Raises ``TextError`` where ``tree`` has more than ``LARGEST_FORMULA`` parts."""
+        """Raise ``TextError`` if ``tree`` has more than ``LARGEST_FORMULA`` parts."""
         if self.size(tree) > LARGEST_FORMULA:
             raise TextError(
                 f"the formula has more than {LARGEST_FORMULA} parts once its definitions are written out",
@@ -91,11 +94,11 @@ class Sizes:
             )
 
     def size(self, tree: Tree) -> int:
-        """The number of parts of ``tree``; a power counts as the product that it is."""
-        found = self.known.get(id(tree))
-        if found is None:
-            found = self.known[id(tree)] = (self._count(tree), tree)
-        return found[0]
+        """Return the number of parts of ``tree``; a power counts as a product."""
+        counted = self.known.get(id(tree))
+        if counted is None:
+            counted = self.known[id(tree)] = (self._count(tree), tree)
+        return counted[0]
 
     def _count(self, tree: Tree) -> int:
         if isinstance(tree, t.Power):
@@ -113,5 +116,5 @@ _FORMULAS: tuple[type, ...] = get_args(Formula)
 
 
 def _children(tree: Tree) -> Iterable[Tree]:
-    # A tuple of classes is looked up faster than a union of them, and this is asked of every part.
+    # isinstance is faster with a tuple of classes than with a union, and this runs for every part.
     return f.children(cast(Formula, tree)) if isinstance(tree, _FORMULAS) else t.children(cast(Term, tree))

@@ -1,17 +1,18 @@
-"""What names stand for while a claim is read: vehicles, lanes and lanelets, groups of vehicles, numbers."""
+"""Scopes: the vehicles, lanes, lanelets, groups of vehicles and numbers that names in a claim stand for."""
 
 import re
 from collections.abc import Collection, Iterator, Mapping
-from typing import TypeAlias
+from typing import TypeAlias, get_args
 
 from roadproof.errors import Position, TextError
 from roadproof.library.quantity import Quantity
-from roadproof.library.specification import unknown
+from roadproof.library.specification import unknown_name
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
 from roadproof.logic.syntax import Binding, Definition, Expression
 from roadproof.runtime.records import dataclass
+from roadproof.world.road import Zone
 from roadproof.world.units import UNITS
 
 SORTS = ("vehicle", "vehicles", "lane", "lanelet")
@@ -19,13 +20,13 @@ _FREE = {"vehicle": re.compile(r"SV|POV[0-9]?"), "lane": re.compile(r"L[0-9]?")}
 
 
 def sort_of_free(name: str) -> str | None:
-    """The sort of a name that a claim need not declare, such as SV."""
+    """Return the sort of a name that needs no declaration, such as SV, else None."""
     return next((sort for sort, pattern in _FREE.items() if pattern.fullmatch(name)), None)
 
 
 @dataclass(frozen=True)
 class Ref:
-    """A vehicle, lane or lanelet that a name stands for."""
+    """A reference to a vehicle, lane or lanelet."""
 
     sort: str
     name: str
@@ -33,22 +34,24 @@ class Ref:
 
 @dataclass(frozen=True)
 class Vehicles:
+    """A group of vehicles."""
+
     names: tuple[str, ...]
 
 
 Value: TypeAlias = Ref | Vehicles | Quantity
 Scope: TypeAlias = Mapping[str, Value]
-# Names of vehicles and of lanes that nothing declares; those of a claim are added as they are met.
+# Undeclared names of vehicles and lanes in a claim, by sort; they are added when they are met.
 Free: TypeAlias = Mapping[str, set[str]]
 
 
 def check_sort(binding: Binding) -> None:
     if binding.sort not in SORTS and binding.sort not in UNITS:
-        raise TextError(unknown("sort or unit", binding.sort, (*SORTS, *UNITS)), binding.at)
+        raise TextError(unknown_name("sort or unit", binding.sort, (*SORTS, *UNITS)), binding.at)
 
 
 def refuse_signal(name: str, signals: Collection[str], at: Position) -> None:
-    """A name that is declared in a claim may not hide a signal."""
+    """Raise ``TextError`` if a name that a claim declares is the name of a signal."""
     if name in signals:
         raise TextError(
             f"'{name}' is a signal of the specification", at, "Give what is declared another name."
@@ -56,16 +59,19 @@ def refuse_signal(name: str, signals: Collection[str], at: Position) -> None:
 
 
 def value_of(binding: Binding) -> Value:
-    """What a declared name stands for: itself, or a number of which nothing is known."""
+    """Return what a declared name stands for: itself, or a variable number."""
     if binding.sort in SORTS:
         return Ref(binding.sort, binding.name)
     return Quantity(t.Variable(binding.name, UNITS[binding.sort][1]), UNITS[binding.sort][1])
 
 
-def scope_of(given: tuple[Binding, ...], parameters: Collection[str], free: Free) -> Scope:
-    """What is declared in front of a claim; ``parameters`` are those of the specification."""
+def claim_scope(bindings: tuple[Binding, ...], parameters: Collection[str], free: Free) -> Scope:
+    """Return the declarations in front of a claim as a scope, and add its vehicles and lanes to ``free``.
+
+    ``parameters``: those of the specification, which may not be declared again. Raises ``TextError``.
+    """
     scope: dict[str, Value] = {}
-    for binding in given:
+    for binding in bindings:
         if binding.name in scope:
             raise TextError(f"'{binding.name}' is given twice", binding.at)
         check_sort(binding)
@@ -82,7 +88,10 @@ def scope_of(given: tuple[Binding, ...], parameters: Collection[str], free: Free
 
 
 def reference(expression: Expression | Ref, sort: str, scope: Scope, free: Free | None) -> Ref:
-    """A vehicle, lane or lanelet named where that sort is expected; ``free`` is None inside definitions."""
+    """Return the vehicle, lane or lanelet that an expression names. Raises ``TextError`` for another sort.
+
+    ``free``: collects names that need no declaration; None inside definitions, which have none.
+    """
     if isinstance(expression, Ref) and expression.sort == sort:
         return expression
     if isinstance(expression, Ref):
@@ -95,7 +104,7 @@ def reference(expression: Expression | Ref, sort: str, scope: Scope, free: Free 
             free[sort].add(expression.name)
             return Ref(sort, expression.name)
         raise TextError(
-            unknown(sort, expression.name, [n for n, v in scope.items() if sort_of(v) == sort]),
+            unknown_name(sort, expression.name, [n for n, v in scope.items() if sort_of(v) == sort]),
             expression.at,
             f"Declare it in front of the claim: given {expression.name}: {sort}: …"
             if free is not None and sort in free
@@ -108,10 +117,14 @@ def reference(expression: Expression | Ref, sort: str, scope: Scope, free: Free 
     return value
 
 
-def deal_out(
+def assign_arguments(
     definition: Definition, call: syntax.Call, scope: Scope
 ) -> Iterator[tuple[Binding, list[Expression | Ref]]]:
-    """The arguments of each parameter; one parameter of sort vehicles takes what the others leave."""
+    """Yield each parameter of a definition with its arguments; a group of vehicles gets all left by the
+    others.
+
+    Raises ``TextError`` for a wrong number of arguments.
+    """
     parameters = definition.parameters
     rest = _spread(call.arguments, scope)
     groups = [b for b in parameters if b.sort == "vehicles"]
@@ -133,7 +146,7 @@ def deal_out(
 
 
 def _spread(arguments: tuple[Expression, ...], scope: Scope) -> list[Expression | Ref]:
-    """Arguments with each group of vehicles replaced by its members."""
+    """Return arguments with each group of vehicles replaced by its members."""
     spread: list[Expression | Ref] = []
     for argument in arguments:
         value = scope.get(argument.name) if isinstance(argument, syntax.Name) else None
@@ -147,7 +160,7 @@ def _spread(arguments: tuple[Expression, ...], scope: Scope) -> list[Expression 
 def vehicles_in(
     domain: syntax.Name | syntax.Call | syntax.Group, scope: Scope, free: Free | None
 ) -> list[Ref] | None:
-    """The vehicles that are quantified over; None where the domain is one of the road."""
+    """Return the vehicles of a quantifier's domain; None for a domain of lanes or lanelets."""
     if isinstance(domain, syntax.Group):
         return [reference(member, "vehicle", scope, free) for member in domain.members]
     value = scope.get(domain.name) if isinstance(domain, syntax.Name) else None
@@ -155,14 +168,14 @@ def vehicles_in(
 
 
 def domain_of(domain: syntax.Name | syntax.Call | syntax.Group, scope: Scope, free: Free | None) -> f.Domain:
-    """The lanes or lanelets that are quantified over."""
+    """Return the lanes or lanelets of a quantifier's domain. Raises ``TextError`` for another domain."""
     if isinstance(domain, syntax.Name) and domain.name == "lanes":
         return f.Domain("lanes")
     if isinstance(domain, syntax.Call):
         argument = domain.arguments[0]
         if domain.name == "zone" and isinstance(argument, syntax.Name):
-            if argument.name not in ("main", "merge", "depart"):
-                raise TextError(unknown("zone", argument.name, ("main", "merge", "depart")), argument.at)
+            if argument.name not in get_args(Zone):
+                raise TextError(unknown_name("zone", argument.name, get_args(Zone)), argument.at)
             return f.Domain("zone", argument.name)
         if domain.name == "lanelets":
             return f.Domain("lanelets", reference(argument, "lane", scope, free).name)
@@ -176,6 +189,7 @@ def domain_of(domain: syntax.Name | syntax.Call | syntax.Group, scope: Scope, fr
 
 
 def sort_of(value: Value) -> str:
+    """Return the sort of a value, for messages."""
     match value:
         case Ref(sort, _):
             return sort
@@ -186,7 +200,7 @@ def sort_of(value: Value) -> str:
 
 
 def names_in(bound: Scope) -> tuple[str, ...]:
-    """The arguments of an application as ``Application`` shows them."""
+    """Return the arguments of an application as ``Application`` shows them."""
     names: list[str] = []
     for value in bound.values():
         match value:

@@ -1,7 +1,7 @@
-"""Definitions, spec sets and options: what a specification file says, and queries in its terms.
+"""Definitions, spec sets and options of specification files, and queries that use them.
 
-A set is a chain of overrides of named definitions; an option value is one more override. The
-definitions in force for a choice of set and options are a ``Specification``.
+A spec set is a chain of overrides of named definitions; an option value is one more override. A
+``Specification`` has the definitions in force for one set and one choice of options.
 """
 
 import hashlib
@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.errors import InputError
+from roadproof.extension import installed_extensions
 from roadproof.logic import syntax
-from roadproof.logic.custom_names import freedom_of, own_signal
+from roadproof.logic.custom_names import assumption_on_signal, custom_signal
 from roadproof.logic.formula import Formula
 from roadproof.logic.show import text
 from roadproof.runtime.files import read_text, refuse_name
@@ -29,7 +30,7 @@ _MENTION = re.compile(r"\[(\w+)\]")
 
 @dataclass(frozen=True)
 class Source:
-    """A specification text and where it came from, for error messages."""
+    """A specification text and its origin, for error messages."""
 
     name: str
     text: str
@@ -37,11 +38,11 @@ class Source:
 
 @dataclass(frozen=True)
 class Library:
-    """Everything that specification files declare; names are unique in each mapping.
+    """The declarations of all specification files; names are unique in each mapping.
 
-    ``lanes``: by scenario, whose lane L is where that is not SV's (semantics §5). ``titles``: by scenario,
-    what it is called, and where that is said; no reading depends on that. ``files``: the users' texts, in
-    order. ``signals``: own signals; one that is derived is a definition, too.
+    ``lanes``: by scenario, the vehicle whose lane L is, if that is not SV (semantics §5). ``titles``: by
+    scenario, its title and where that is declared; formulas do not depend on it. ``files``: the users' texts,
+    in order. ``signals``: custom signals; a derived one is a definition, too.
     """
 
     parameters: Mapping[str, syntax.ParameterDeclaration] = field(default_factory=dict)
@@ -62,12 +63,16 @@ class Library:
 
     @cached_property
     def freedom(self) -> dict[str, str]:
-        """What an answer supposes of each own signal that is not derived: ``unconstrained: …``."""
-        return {x.name: freedom_of(own_signal(x, "")) for x in self.signals.values() if x.body is None}
+        """The assumption of answers about each custom signal that is not derived: ``unconstrained: …``."""
+        return {
+            x.name: assumption_on_signal(custom_signal(x, ""))
+            for x in self.signals.values()
+            if x.body is None
+        }
 
     @cached_property
     def fingerprint(self) -> str:
-        """A short text that changes with all that is declared; with places and titles it does not."""
+        """A hash of all declarations; it does not depend on their places and on titles."""
         left_out = ("sources", "titles", "files", *(() if self.signals else ("signals",)))
         parts = [x.name for x in fields(self) if x.name not in left_out]
         declared = [repr(sorted(getattr(self, part).items())) for part in parts]
@@ -79,25 +84,24 @@ class Library:
         return {}
 
     def select(self, set_name: str = "base", options: Mapping[str, str] | None = None) -> "Specification":
-        """The definitions in force for a spec set and option values (defaults where not given).
+        """Return the definitions in force for a spec set and option values (by default the first of each).
 
-        The same choice gives the same object. Raises ``InputError`` for a set, option or value that does not
-        exist.
+        The same choice returns the same object. Raises ``InputError`` for an unknown set, option or value.
         """
         chosen = {name: declared.values[0] for name, declared in self.options.items()}
         for name, value in (options or {}).items():
             if name not in self.options:
-                raise InputError(f"option {name}={value}: {unknown('option', name, self.options)}")
+                raise InputError(f"option {name}={value}: {unknown_name('option', name, self.options)}")
             if value not in self.options[name].values:
                 allowed = " or ".join(self.options[name].values)
                 raise InputError(f"option {name}={value}: the value must be {allowed}")
             chosen[name] = value
         key = (set_name, tuple(chosen.items()))
         if key not in self._selected:
-            self._selected[key] = self._made(set_name, chosen)
+            self._selected[key] = self._specification(set_name, chosen)
         return self._selected[key]
 
-    def _made(self, set_name: str, chosen: Mapping[str, str]) -> "Specification":
+    def _specification(self, set_name: str, chosen: Mapping[str, str]) -> "Specification":
         definitions = dict(self.definitions)
         for block in self._chain(set_name):
             definitions |= {d.name: d for d in block.definitions}
@@ -106,9 +110,9 @@ class Library:
         return Specification(self, set_name, chosen, definitions)
 
     def _chain(self, set_name: str) -> list[syntax.SetBlock]:
-        """From the outermost ancestor to ``set_name``."""
+        """Return the sets from the outermost ancestor to ``set_name``."""
         if set_name not in self.sets:
-            raise InputError(f"set={set_name}: {unknown('spec set', set_name, self.sets)}")
+            raise InputError(f"set={set_name}: {unknown_name('spec set', set_name, self.sets)}")
         chain: list[syntax.SetBlock] = []
         name = set_name
         while name:
@@ -119,7 +123,7 @@ class Library:
 
 @dataclass(frozen=True)
 class Specification:
-    """One spec set under one choice of options."""
+    """The definitions of one spec set under one choice of options."""
 
     library: Library
     set_name: str
@@ -127,26 +131,28 @@ class Specification:
     definitions: Mapping[str, syntax.Definition]
 
     @cached_property
-    def worked_out(self) -> dict[tuple[object, ...], Any]:
-        """What was worked out of these definitions, which do not change, by what was asked."""
+    def memo(self) -> dict[tuple[object, ...], Any]:
+        """A cache of values that depend on these definitions only."""
         return {}
 
     def in_set(self, set_name: str) -> "Specification":
-        """The same options under another set."""
+        """Return the specification of another set under the same options."""
         return self if set_name == self.set_name else self.library.select(set_name, self.options)
 
     def describe(self, definition: syntax.Definition, depth: int = 4) -> str:
-        """Its description, with each ``[name]`` in it replaced by the description of that definition."""
+        """Return the description of a definition, with each ``[name]`` replaced by that definition's
+        description.
+        """
 
-        def look_up(found: re.Match[str]) -> str:
-            other = self.definitions.get(found[1])
-            return found[0] if other is None or depth == 0 else self.describe(other, depth - 1)
+        def look_up(match: re.Match[str]) -> str:
+            other = self.definitions.get(match[1])
+            return match[0] if other is None or depth == 0 else self.describe(other, depth - 1)
 
         return _MENTION.sub(look_up, definition.doc)
 
 
-def unknown(what: str, name: str, known: Iterable[str]) -> str:
-    """A message for a name that does not exist, with the nearest that does."""
+def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
+    """Return a message for a name that does not exist, with the most similar name that does."""
     names = sorted(known)
     near = get_close_matches(name, names, n=1, cutoff=0.6)
     if near:
@@ -156,54 +162,57 @@ def unknown(what: str, name: str, known: Iterable[str]) -> str:
 
 
 def on_request() -> dict[str, Path]:
-    """The specification files that come with roadproof and are read where they are named, by name."""
+    """Return the specification files that are shipped but only read when they are named, by name."""
     folder = Path(__file__).parent / "sets" / "on_request"
-    return {file.stem: file for file in sorted(folder.glob("*.spec"))}
+    own = {file.stem: file for file in sorted(folder.glob("*.spec"))}
+    for x in installed_extensions().values():
+        for name, file in x.record.specifications.items():
+            own[name] = Path(x.folder) / file
+    return own
 
 
 def read_specification(path: Path) -> Source:
-    """The text of a user's file, or of one that is read ``on_request`` and is named without its ending.
+    """Return the text of a user's file, or of a file ``on_request`` that is named without its suffix.
 
-    Raises ``InputError`` where it cannot be read as UTF-8 text.
+    Raises ``InputError`` if it cannot be read as UTF-8 text.
     """
     path = on_request().get(str(path), path)
     refuse_name(path)
     return Source(str(path), read_text(path, LARGEST_FILE, "split it, or name another file"))
 
 
-# Names that mean something without a definition; library.elaborate gives their meaning.
+# Names with a built-in meaning, which library.elaboration gives them.
 BUILT_IN = frozenset(
     {*SIGNALS, *FIXED, "occ"} | {"max", "min", "abs", "inverse", "lanes", "lanelets", "zone", "adjacentLanes"}
 )
-# Names of vehicles and lanes that need no declaration, and columns that recordings have beside signals.
+# Names of vehicles and lanes that need no declaration; columns of recordings that are no signals.
 ROLE = re.compile(r"SV|POV[0-9]?|L[0-9]?")
 NOT_A_COLUMN = frozenset({"time", "vehicle"})
 
 
-def is_within(bound: str, value: Fraction) -> bool:
-    """Whether a value keeps a declared bound: ``>``, ``>=`` (both against 0) or none."""
+def satisfies_bound(bound: str, value: Fraction) -> bool:
+    """Return whether a value satisfies a declared bound: ``>``, ``>=`` (both against 0) or none."""
     return value > 0 if bound == ">" else value >= 0 if bound == ">=" else True
 
 
 def key_of(declared: syntax.Definition | syntax.ParameterDeclaration | syntax.SignalDeclaration) -> str:
-    """Under which a library has the text that a declaration was written in."""
+    """Return the key of a declaration in ``Library.sources``."""
     return f"{declared.name}:{declared.at.line}:{declared.at.column}"
 
 
 def source_of(
     library: Library, declared: syntax.Definition | syntax.ParameterDeclaration | syntax.SignalDeclaration
 ) -> Source:
-    """Where a definition or a parameter was written."""
+    """Return the text in which a declaration was written."""
     return library.sources.get(key_of(declared), Source("", ""))
 
 
 @dataclass(frozen=True)
 class Query:
-    """A formula in the definitions of one specification, with the names that are free in it.
+    """A formula with the names that are free in it, in the definitions of one specification.
 
-    ``claim`` is what is said, as a tree, and ``formula`` what it means; ``written`` is how a user wrote
-    it, empty where it was put together. ``vehicles``: those that are declared, then others by name;
-    ``lanes``: free lanes by name.
+    ``claim``: the syntax tree, and ``formula`` its meaning. ``written``: the user's text, empty for a
+    composed query. ``vehicles``: declared ones first, then the others by name. ``lanes``: free lanes by name.
     """
 
     claim: syntax.Claim
@@ -214,5 +223,5 @@ class Query:
 
     @property
     def text(self) -> str:
-        """The query as text, which reads as the same query."""
+        """The query as text, which parses to the same query."""
         return self.written or text(self.claim)

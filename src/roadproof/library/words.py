@@ -1,23 +1,23 @@
-"""What a scenario is called, for people: a title, its road sector, what SV and POV do, and a sentence.
+"""Scenarios in words: a title, the road sector, what SV and POV do, and a sentence.
 
-All words are the specification's: the ``title of`` its number, and the descriptions of its definitions. A
-scenario that has no title is called by its description.
+All words come from the specification: from ``title of`` the number, and from descriptions of definitions. A
+scenario without title is named by its description.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby
 
-from roadproof.library import scenarios as s
+from roadproof.library import scenarios
 from roadproof.library.specification import Specification
 from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)
 class Words:
-    """A scenario in words, each empty where the specification says nothing.
+    """A scenario in words; each field is empty if the specification has no text for it.
 
     ``title``: what happens, without the road ``sector``. ``sv`` and ``pov``: what they do. ``sentence``: the
-    whole as a driver would tell it.
+    whole scenario as a driver would describe it.
     """
 
     number: int
@@ -33,7 +33,7 @@ class Words:
         return ", ".join(filter(None, (self.title, self.sector)))
 
     def __str__(self) -> str:
-        """``scenario 4: …``, the number alone where there are no words.
+        """Return ``scenario 4: …``, or the number alone if there are no words.
 
         >>> str(Words(4, "deceleration ahead, lane keep", "main road")), str(Words(40))
         ('scenario 4: deceleration ahead, lane keep, main road', 'scenario 40')
@@ -41,45 +41,46 @@ class Words:
         return f"scenario {self.number}" + (f": {self.name}" if self.name else "")
 
 
-Called = Mapping[int, Words]
+ScenarioWords = Mapping[int, Words]
 """Scenarios in words, by number."""
 
 
 def words_of(specification: Specification, number: int) -> Words:
-    """A scenario in words; one that the specification does not have has none."""
-    where = s.sector_words(specification, number)
-    sv, pov = s.behaviour_words(specification, number)
-    declared = s.declared_title(specification, number)
+    """Return a scenario in words; all are empty for a number that the specification does not have."""
+    sector = scenarios.sector_words(specification, number)
+    sv, pov = scenarios.behaviour_words(specification, number)
+    declared = scenarios.declared_title(specification, number)
     if declared is not None:
         title, sentence = declared.title, declared.sentence or declared.title
     else:
-        title = s.own_words(specification, number) or ", ".join(filter(None, (sv, pov)))
+        title = scenarios.description_of(specification, number) or ", ".join(filter(None, (sv, pov)))
         sentence = title
-    told = ": ".join(filter(None, (where, sentence)))
-    return Words(number, title, where, sv, pov, told and f"{told[0].upper()}{told[1:].rstrip('.')}.")
+    text = ": ".join(filter(None, (sector, sentence)))
+    return Words(number, title, sector, sv, pov, text and f"{text[0].upper()}{text[1:].rstrip('.')}.")
 
 
-def called(specification: Specification, numbers: Iterable[int] | None = None) -> Called:
-    """Scenarios in words, in order; all of a specification where no ``numbers`` are given."""
-    chosen = s.numbers_of(specification) if numbers is None else numbers
+def words_by_number(specification: Specification, numbers: Iterable[int] | None = None) -> ScenarioWords:
+    """Return scenarios in words, in order; without ``numbers``, all scenarios of the specification."""
+    chosen = scenarios.numbers_of(specification) if numbers is None else numbers
     return {number: words_of(specification, number) for number in sorted(chosen)}
 
 
-def called_by(specification: Specification, texts: Iterable[str]) -> Called:
-    """The scenarios that some texts name, in words."""
-    return called(specification, {number for text in texts for number in s.numbers_named(text)})
+def words_named_in(specification: Specification, texts: Iterable[str]) -> ScenarioWords:
+    """Return the scenarios that some texts name, in words."""
+    numbers = {number for text in texts for number in scenarios.numbers_named(text)}
+    return words_by_number(specification, numbers)
 
 
-def called_in(specification: Specification, sets: Iterable[str], numbers: Iterable[int]) -> Called:
-    """Scenarios as all of some spec sets call them; one that they do not call alike has no words."""
+def words_in_sets(specification: Specification, sets: Iterable[str], numbers: Iterable[int]) -> ScenarioWords:
+    """Return scenarios in the words that all of some spec sets share; without words where the sets differ."""
     chosen = sorted(numbers)
-    first, *others = (called(specification.in_set(name), chosen) for name in sets)
-    alike = (n for n in chosen if all(words[n] == first[n] for words in others))
-    return {**{n: Words(n) for n in chosen}, **{n: first[n] for n in alike}}
+    first, *others = (words_by_number(specification.in_set(name), chosen) for name in sets)
+    agreeing = (n for n in chosen if all(words[n] == first[n] for words in others))
+    return {**{n: Words(n) for n in chosen}, **{n: first[n] for n in agreeing}}
 
 
-def legend(words: Called) -> Iterator[str]:
-    """What numbers in a table mean: a line for each title and one for the roads; one line for one number."""
+def legend(words: ScenarioWords) -> Iterator[str]:
+    """Yield lines that explain numbers in a table: one for each title, one for all road sectors."""
     if len(words) == 1:
         yield from (f"{number}: {x.name}" for number, x in words.items() if x.name)
         return
@@ -93,16 +94,16 @@ def legend(words: Called) -> Iterator[str]:
 
 
 def _numbers_by(named: Iterable[tuple[int, str]]) -> dict[str, str]:
-    """The numbers with each name, as text; those without a name are left out."""
-    found: dict[str, list[int]] = {}
+    """Return the numbers with each name, as text, without those that have no name."""
+    by_name: dict[str, list[int]] = {}
     for number, name in named:
         if name:
-            found.setdefault(name, []).append(number)
-    return {name: spans(numbers) for name, numbers in found.items()}
+            by_name.setdefault(name, []).append(number)
+    return {name: spans(numbers) for name, numbers in by_name.items()}
 
 
 def spans(numbers: Iterable[int], least: int = 3) -> str:
-    """Numbers as text, ``least`` or more that follow each other as a span.
+    """Return numbers as text, with ``least`` or more consecutive ones as a span.
 
     >>> spans([1, 2, 3, 9, 17, 18])
     '1-3, 9, 17, 18'

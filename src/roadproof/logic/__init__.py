@@ -1,4 +1,4 @@
-"""Formulas and terms of signal temporal logic: parse, print, rewrite, classify.
+"""Formulas and terms of signal temporal logic (STL): parse, print, rewrite and classify them.
 
-Of the world it imports only signals and units.
+This package imports signals and units from ``world``, and nothing else of it.
 """

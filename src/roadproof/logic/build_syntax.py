@@ -1,4 +1,4 @@
-"""Parse trees to syntax trees."""
+"""Conversion of lark's parse trees to syntax trees."""
 
 from fractions import Fraction
 from typing import Any, Literal, cast
@@ -9,7 +9,7 @@ from lark.visitors import Transformer_NonRecursive
 
 from roadproof.errors import Position, TextError
 from roadproof.logic import syntax
-from roadproof.logic.instances import instances
+from roadproof.logic.instances import expand_each
 from roadproof.logic.syntax import LONGEST_EXPONENT, LONGEST_NUMBER, Expression, Statement
 from roadproof.world.units import UNITS
 
@@ -17,6 +17,7 @@ GREATEST_POWER = 8
 
 
 def short_token(token: str) -> str:
+    """Return a token for a message, cut after 30 characters."""
     return token if len(token) <= 30 else token[:30] + "…"
 
 
@@ -51,8 +52,8 @@ def _integer(token: Token, greatest: int) -> int:
 
 
 def _written_out(items: list[Any]) -> tuple[syntax.Definition, ...]:
-    """The definitions of a block; those of ``each`` blocks in it once for every index."""
-    several = (instances(x) if isinstance(x, syntax.EachBlock) else [x] for x in items)
+    """Return the definitions of a block, with ``each`` blocks in it expanded."""
+    several = (expand_each(x) if isinstance(x, syntax.EachBlock) else [x] for x in items)
     return tuple(definition for some in several for definition in some)
 
 
@@ -61,7 +62,7 @@ def _doc(token: Token | None) -> str:
 
 
 def _range(name: str, sort: str, within: tuple[Any, Any], at: Position) -> tuple[Any, Any]:
-    """Both bounds of a signal in its unit, None without bound."""
+    """Return both bounds of a signal in its unit, None if unbounded."""
     ends: list[Fraction | None] = []
     for end, without in zip(within, ("-inf", "inf"), strict=True):
         if isinstance(end, str):
@@ -86,7 +87,10 @@ def _range(name: str, sort: str, within: tuple[Any, Any], at: Position) -> tuple
 
 @v_args(meta=True)
 class SyntaxBuilder(Transformer_NonRecursive[Token, Any]):
-    """Parse tree to syntax tree, bottom up; not recursive, so that input cannot exhaust the stack."""
+    """Converter of a parse tree, bottom up; each method makes the node of the grammar rule of its name.
+
+    It is not recursive, so that deeply nested input cannot exhaust the stack.
+    """
 
     def literal(self, meta: Meta, items: list[Token]) -> Expression:
         unit = str(items[1]) if len(items) > 1 and items[1] is not None else ""
@@ -182,6 +186,7 @@ class SyntaxBuilder(Transformer_NonRecursive[Token, Any]):
         return items[0], str(items[1])
 
     def parameter(self, meta: Meta, items: list[Any]) -> Statement:
+        """Return a parameter declaration. Raises ``TextError`` if ``where`` is about another name."""
         name, value, unit, bound, doc = items
         if bound is not None and str(bound[0]) != str(name):
             raise TextError(
@@ -202,6 +207,7 @@ class SyntaxBuilder(Transformer_NonRecursive[Token, Any]):
         return items[0], items[1]
 
     def signal(self, meta: Meta, items: list[Any]) -> Statement:
+        """Return a signal declaration. Raises ``TextError`` for a wrong unit, range or number of vehicles."""
         name, bindings, sort, within, doc, *rest = items
         body = rest[0] if rest else None
         vehicle = ""
@@ -233,6 +239,7 @@ class SyntaxBuilder(Transformer_NonRecursive[Token, Any]):
         return syntax.Definition(str(name), bindings, _doc(doc), body, _token_at(name))
 
     def range(self, _: Meta, items: list[Any]) -> tuple[int, ...]:
+        """Return the numbers from low to high, both included. Raises ``TextError`` for none or too many."""
         low = _integer(items[0], 10_000)
         high = low if items[1] is None else _integer(items[1], 10_000)
         if high < low or high - low > 1_000:
@@ -243,12 +250,14 @@ class SyntaxBuilder(Transformer_NonRecursive[Token, Any]):
         return tuple(range(low, high + 1))
 
     def each(self, meta: Meta, items: list[Any]) -> Statement:
+        """Return a block of definitions with its indices; ``expand_each`` expands it."""
         ranges = [i for i in items[1:] if isinstance(i, tuple)]
         definitions = tuple(i for i in items[1:] if isinstance(i, syntax.Definition))
         indices = tuple(index for r in ranges for index in r)
         return syntax.EachBlock(str(items[0]), indices, definitions, _at(meta))
 
     def set(self, meta: Meta, items: list[Any]) -> Statement:
+        """Return a spec set with its parent ('' for none)."""
         name, parent, doc, *definitions = items
         return syntax.SetBlock(
             str(name), "" if parent is None else str(parent), _doc(doc), _written_out(definitions), _at(meta)

@@ -1,4 +1,4 @@
-"""Signs and words of other languages in a text that does not parse, and what to write instead."""
+"""Hints for operators and keywords of other languages in a text that does not parse."""
 
 import re
 
@@ -76,7 +76,7 @@ _WORDS = {
     "FALSE": "Write false.",
     "infinity": "Write inf.",
 }
-# F[] and != are meant as they stand, or nearly so.
+# F[] and != belong to this language, so [] after F and ! before = are no foreign operators.
 _SIGN = re.compile(
     "|".join(
         ("(?<![FGU])" if sign == "[]" else "") + re.escape(sign) + ("(?!=)" if sign == "!" else "")
@@ -84,31 +84,31 @@ _SIGN = re.compile(
     )
 )
 _WORD = re.compile(rf"(?<![A-Za-z0-9_@])(?:{'|'.join(_WORDS)})(?![A-Za-z0-9_@])")
-_NEAR = 200  # characters around a mistake that are looked at
+_NEAR = 200  # characters around a mistake that are searched
 
 
 def find_foreign(text: str, mistake: int) -> tuple[int, str, str] | None:
-    """What stands at or just before the character at which reading stopped, if other languages have it.
+    """Find an operator or keyword of another language at, or just before, the place where parsing stopped.
 
-    Where it begins in ``text``, the sign or word, and what to write instead.
+    Returns its position in ``text``, the operator or keyword, and the hint; None if there is none.
     """
     first = max(0, mistake - _NEAR)
-    near = text[first : mistake + _NEAR]
-    for found in _SIGN.finditer(near):
-        if first + found.start() <= mistake < first + found.end():
-            return first + found.start(), found[0], _SIGNS[found[0]]
-    for found in _WORD.finditer(near):
-        begin, end = first + found.start(), first + found.end()
-        if begin <= mistake and not text[end:mistake].strip() and not _is_name(found[0], near):
-            return begin, found[0], _WORDS[found[0]]
+    window = text[first : mistake + _NEAR]
+    for match in _SIGN.finditer(window):
+        if first + match.start() <= mistake < first + match.end():
+            return first + match.start(), match[0], _SIGNS[match[0]]
+    for match in _WORD.finditer(window):
+        start, end = first + match.start(), first + match.end()
+        if start <= mistake and not text[end:mistake].strip() and not _is_name(match[0], window):
+            return start, match[0], _WORDS[match[0]]
     return None
 
 
 def _is_name(word: str, text: str) -> bool:
-    """Whether a text uses a word as the name of something."""
+    """Return whether a text uses a word as the name of something."""
     return re.search(rf"\b{word}\s*[:,)]|\b(some|every)\s+{word}\b", text) is not None
 
 
 def instead_of(word: str) -> str:
-    """What to write instead of a word that other languages have; empty where none has."""
+    """Return the hint for a keyword of another language, else an empty text."""
     return _WORDS.get(word, "")

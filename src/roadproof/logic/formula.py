@@ -1,18 +1,18 @@
-"""The formula tree: signal temporal logic over comparisons of terms.
+"""The formula tree: signal temporal logic (STL) over comparisons of terms.
 
-Sugar dies at construction: there is no implication node, and ``!=`` is a negated equality.
-``Application`` remembers which definition a sub-formula came from; it means what its body means.
-Quantifiers over lanes and lanelets stay in the tree until a road is chosen (``library.bind``).
+There are no nodes for implications and ``!=``: their constructors rewrite them. ``Application`` records which
+definition a sub-formula comes from, and has the meaning of its body. Quantifiers over lanes and lanelets stay
+in the tree until a road is chosen (``library.bind``).
 
-Semantics (semantics §1; paper, Table *Boolean semantics of STL*): time is dense and starts at 0.
-``Until(φ, J, ψ)`` at T: some t in J has ψ at T+t and φ at T+t' for every t' < t in J.
+Semantics (semantics §1; paper, Table *Boolean semantics of STL*): time is dense and starts at 0. ``Until(φ,
+J, ψ)`` at T: some t in J has ψ at T+t and φ at T+t' for every t' < t in J.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from operator import is_
 from typing import Literal, TypeAlias, assert_never
 
-from roadproof.logic.node import node, once
+from roadproof.logic.node import memoised, node
 from roadproof.logic.terms import Number, Signal, Size, Term, number, subtract
 
 Comparison: TypeAlias = Literal["<", "<=", ">", ">="]
@@ -120,7 +120,7 @@ class Always:
 
 @node
 class Application:
-    """An application of a definition, kept for reading and for opaque atoms; means ``body``."""
+    """An application of a definition, for printing and for opaque atoms; it has the meaning of ``body``."""
 
     name: str
     arguments: tuple[str, ...]
@@ -138,44 +138,48 @@ FOREVER = Interval(ZERO, None)
 
 
 def negation(body: Formula) -> Formula:
-    """``not body``, without double negations."""
+    """Return ``not body``, without double negations."""
     match body:
         case Truth(value):
             return Truth(not value)
         case Not(inner):
             return inner
-        case _:
+        case Compare() | Occupies() | Some() | Every() | And() | Or() | Application():
             return Not(body)
+        case Until() | Eventually() | Always():
+            return Not(body)
+        case _:
+            assert_never(body)
 
 
 def conjunction(*parts: Formula) -> Formula:
-    """All of ``parts``; of none it is true, of one that one."""
-    kept = tuple(p for p in parts if p != TRUE)
-    if FALSE in kept:
+    """Return the conjunction of ``parts`` without true parts; true if none is left."""
+    remaining = tuple(p for p in parts if p != TRUE)
+    if FALSE in remaining:
         return FALSE
-    return TRUE if not kept else kept[0] if len(kept) == 1 else And(kept)
+    return TRUE if not remaining else remaining[0] if len(remaining) == 1 else And(remaining)
 
 
 def disjunction(*parts: Formula) -> Formula:
-    """Some of ``parts``; of none it is false, of one that one."""
-    kept = tuple(p for p in parts if p != FALSE)
-    if TRUE in kept:
+    """Return the disjunction of ``parts`` without false parts; false if none is left."""
+    remaining = tuple(p for p in parts if p != FALSE)
+    if TRUE in remaining:
         return TRUE
-    return FALSE if not kept else kept[0] if len(kept) == 1 else Or(kept)
+    return FALSE if not remaining else remaining[0] if len(remaining) == 1 else Or(remaining)
 
 
 def implication(premise: Formula, conclusion: Formula) -> Formula:
-    """``premise -> conclusion``."""
+    """Return ``premise -> conclusion``."""
     return disjunction(negation(premise), conclusion)
 
 
 def equivalence(left: Formula, right: Formula) -> Formula:
-    """``left <-> right``."""
+    """Return ``left <-> right``."""
     return conjunction(implication(left, right), implication(right, left))
 
 
 def children(formula: Formula) -> tuple[Formula, ...]:
-    """The direct sub-formulas of ``formula``."""
+    """Return the direct sub-formulas of ``formula``."""
     match formula:
         case Truth() | Compare() | Occupies():
             return ()
@@ -197,9 +201,9 @@ def children(formula: Formula) -> tuple[Formula, ...]:
 
 
 def with_children(formula: Formula, new: tuple[Formula, ...]) -> Formula:
-    """``formula`` with its direct sub-formulas replaced, in the order of ``children``.
+    """Return ``formula`` with its direct sub-formulas replaced, in the order of ``children``.
 
-    It is ``formula`` itself where these are the same objects, and what is known of it stays known.
+    If these are the same objects, ``formula`` itself is returned, and cached facts about it stay.
     """
     match formula:
         case Truth() | Compare() | Occupies():
@@ -221,7 +225,7 @@ def with_children(formula: Formula, new: tuple[Formula, ...]) -> Formula:
 
 
 def intervals(formula: Formula) -> tuple[Interval, ...]:
-    """The intervals of ``formula`` itself, not of what is inside it; of a state formula none."""
+    """Return the intervals of ``formula`` without those of its sub-formulas; empty for a state formula."""
     match formula:
         case Until(_, interval, _) | Eventually(interval, _) | Always(interval, _):
             return (interval,)
@@ -232,7 +236,7 @@ def intervals(formula: Formula) -> tuple[Interval, ...]:
 
 
 def with_intervals(formula: Formula, change: Callable[[Interval], Interval]) -> Formula:
-    """``formula`` with ``change`` applied to each of its ``intervals``."""
+    """Return ``formula`` with ``change`` applied to each of its ``intervals``."""
     match formula:
         case Until(left, interval, right):
             return Until(left, change(interval), right)
@@ -245,7 +249,7 @@ def with_intervals(formula: Formula, change: Callable[[Interval], Interval]) -> 
 
 
 def subformulas(*formulas: Formula) -> Iterator[Formula]:
-    """Every distinct sub-formula once, parents before children, of one formula after the other."""
+    """Yield every distinct sub-formula once, parents before children, formula by formula."""
     seen: set[Formula] = set()
     for whole in formulas:
         waiting = [whole]
@@ -259,8 +263,11 @@ def subformulas(*formulas: Formula) -> Iterator[Formula]:
 
 
 def nesting(formula: Formula) -> dict[Application, int]:
-    """Every application of a definition, as ``subformulas`` orders them, and in how many others it is."""
-    found: dict[Application, int] = {}
+    """Return every application of a definition with its depth: how many other applications it is inside.
+
+    The order is that of ``subformulas``.
+    """
+    depths: dict[Application, int] = {}
     seen: set[Formula] = set()
     waiting = [(formula, 0)]
     while waiting:
@@ -269,57 +276,59 @@ def nesting(formula: Formula) -> dict[Application, int]:
             continue
         seen.add(current)
         if isinstance(current, Application):
-            found[current] = depth
+            depths[current] = depth
             depth += 1
         waiting.extend((child, depth) for child in reversed(children(current)))
-    return found
+    return depths
 
 
-@once
+@memoised
 def is_state(formula: Formula) -> bool:
-    """Whether ``formula`` speaks about one instant only: no temporal operator inside."""
+    """Return whether ``formula`` is about one instant only: it has no temporal operator."""
     return not isinstance(formula, Temporal) and all(map(is_state, children(formula)))
 
 
-def share(
+def hash_cons(
     formulas: Iterable[Formula],
     change: Callable[[Formula], Formula],
     known: dict[Formula, Formula] | None = None,
 ) -> list[Formula]:
-    """As ``transform`` of each, with one object for all sub-formulas that are equal.
+    """Apply ``transform`` to each formula, and make equal sub-formulas one object.
 
-    Whatever compares them has then no need to look inside. ``known``: the objects of earlier calls, which
-    takes those of this one.
+    Comparisons of the results then need not look inside. ``known``: the objects of earlier calls; those of
+    this call are added to it.
     """
     pool: dict[Formula, Formula] = {} if known is None else known
-    done: dict[int, tuple[Formula, Formula]] = {}  # an object keeps its id while it is held
+    done: dict[int, tuple[Formula, Formula]] = {}  # no id is reused while the object is stored
 
     def visit(current: Formula) -> Formula:
+        """Rebuild a node, once per object."""
         if id(current) not in done:
             parts = tuple(visit(child) for child in children(current))
-            made = change(with_children(current, parts))
-            done[id(current)] = current, pool.setdefault(made, made)
+            rebuilt = change(with_children(current, parts))
+            done[id(current)] = current, pool.setdefault(rebuilt, rebuilt)
         return done[id(current)][1]
 
     return [visit(formula) for formula in formulas]
 
 
 def transform(formula: Formula, change: Callable[[Formula], Formula]) -> Formula:
-    """``formula`` rebuilt from its leaves up, ``change`` applied to every rebuilt node once."""
+    """Return ``formula`` rebuilt bottom-up, with ``change`` applied once to every rebuilt node."""
 
     done: dict[Formula, Formula] = {}
 
     def visit(current: Formula) -> Formula:
-        made = done.get(current)
-        if made is None:
-            made = done[current] = change(with_children(current, tuple(map(visit, children(current)))))
-        return made
+        """Rebuild a node, once per structure."""
+        rebuilt = done.get(current)
+        if rebuilt is None:
+            rebuilt = done[current] = change(with_children(current, tuple(map(visit, children(current)))))
+        return rebuilt
 
     return visit(formula)
 
 
 def boxes_overlap(a: str, b: str) -> Formula:
-    """The boxes [s-length, s] × [d-width, d] of ``a`` and ``b`` overlap with positive area."""
+    """Return "the boxes [s-length, s] × [d-width, d] of ``a`` and ``b`` overlap with positive area"."""
     parts: list[Formula] = []
     for one, other in ((a, b), (b, a)):
         parts.append(Compare(subtract(Signal("s", one), Size("length", one)), "<", Signal("s", other)))

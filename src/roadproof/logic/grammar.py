@@ -1,4 +1,4 @@
-"""The grammar, and a text that changes with all that a syntax tree depends on."""
+"""The grammar of specification files, and a text to key caches of syntax trees with."""
 
 import re
 import sys
@@ -11,7 +11,7 @@ from roadproof.world.units import UNITS
 
 @cache
 def grammar() -> str:
-    """The grammar as lark reads it."""
+    """Return the grammar as lark reads it, with the table of units filled in."""
     text = Path(__file__).with_name("grammar.lark").read_text("utf-8")
     longest_first = sorted(UNITS, key=len, reverse=True)
     return text.replace("%UNITS%", "|".join(re.escape(x).replace("/", r"\/") for x in longest_first))
@@ -19,7 +19,10 @@ def grammar() -> str:
 
 @cache
 def version() -> str:
-    """All that trees depend on besides the text: grammar, the source of what makes them, lark, Python."""
+    """Return a text that changes whenever a parsed syntax tree could change.
+
+    It joins the grammar, the source of the parser, the version of lark and that of Python.
+    """
     here = Path(__file__).parent
     others = (here.parent / name for name in ("errors.py", "world/signals.py", "world/units.py"))
     sources = (path.read_text("utf-8") for path in sorted((*here.glob("*.py"), *others)))
@@ -27,8 +30,8 @@ def version() -> str:
 
 
 def _version_of_lark() -> str:
-    """The file of lark that states its version; to import it takes longer than to read a tree."""
-    found = find_spec("lark")
-    assert found is not None
-    assert found.origin is not None
-    return Path(found.origin).read_text("utf-8")
+    """Return the file of lark that states its version; to import lark takes longer than to read a tree."""
+    spec = find_spec("lark")
+    assert spec is not None
+    assert spec.origin is not None
+    return Path(spec.origin).read_text("utf-8")

@@ -1,7 +1,7 @@
-"""Syntax trees to LaTeX in the paper's hand: names in \\mathit, operators as in its Table of formulas."""
+"""LaTeX of syntax trees in the paper's style: names in \\mathit, operators as in its Table of formulas."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import assert_never
 
@@ -9,7 +9,7 @@ from roadproof.logic import show, syntax
 from roadproof.logic.syntax import Bounds, Claim, Definition, Expression
 from roadproof.logic.terms import SIGNAL_DIMENSIONS
 
-_RELATION = {
+_RELATION: Mapping[syntax.BinaryOperator, str] = {  # partial: * / ^ are written without a sign
     "<": "<",
     "<=": r"\le",
     ">": ">",
@@ -27,7 +27,7 @@ _WORDS = re.compile("([a-z]+)")
 
 
 def latex(tree: Expression | Claim | Definition) -> str:
-    """``tree`` for LaTeX's mathematics mode; a definition is ``head \\;:=\\; body``."""
+    """Return ``tree`` for LaTeX's mathematics mode; a definition becomes ``head \\;:=\\; body``."""
     match tree:
         case Claim(_, body):
             return _show(body, show.QUANTIFIED)
@@ -35,23 +35,23 @@ def latex(tree: Expression | Claim | Definition) -> str:
             return (
                 rf"{_call(name, [symbol(b.name) for b in parameters])} \;:=\; {_show(body, show.QUANTIFIED)}"
             )
-        case _:
+        case _:  # open: every expression
             return _show(tree, show.QUANTIFIED)
 
 
 def align(definitions: Iterable[Definition]) -> str:
-    """Definitions below each other in an ``align*`` environment."""
+    """Return the definitions below each other, in an ``align*`` environment."""
     rows = (latex(definition).replace(r" \;:=\; ", r" &\;:=\; ", 1) for definition in definitions)
     return "\\begin{align*}\n" + " \\\\\n".join(rows) + "\n\\end{align*}"
 
 
-def _show(expression: Expression, wanted: int) -> str:
+def _show(expression: Expression, minimum_level: int) -> str:
     shown = _operator(expression)
-    return rf"\left({shown}\right)" if _level(expression) < wanted else shown
+    return rf"\left({shown}\right)" if _level(expression) < minimum_level else shown
 
 
 def _level(expression: Expression) -> int:
-    """As in text, but a fraction has its bar for parentheses."""
+    """Return how tightly an expression binds in LaTeX, where a fraction needs no parentheses."""
     return (
         show.POWER
         if isinstance(expression, syntax.Binary) and expression.op == "/"
@@ -87,9 +87,9 @@ def _operator(expression: Expression) -> str:
         case syntax.Chain(op, parts, _):
             join, inner = (r" \wedge ", show.AND) if op == "and" else (r" \vee ", show.OR)
             return join.join(_show(part, inner + 1) for part in parts)
-        case syntax.Temporal("U", bounds, left, right, _) if left is not None:
-            until = rf"\mathbin{{\mathcal{{U}}{_bounds(bounds)}}}"
-            return f"{_show(left, show.UNARY)} {until} {_show(right, show.UNTIL)}"
+        case syntax.Temporal(op, bounds, left, right, _) if left is not None:
+            between = rf"\mathbin{{\mathcal{{{op}}}{_bounds(bounds)}}}"
+            return f"{_show(left, show.UNARY)} {between} {_show(right, show.UNTIL)}"
         case syntax.Temporal(op, bounds, _, right, _):
             return rf"\mathcal{{{op}}}{_bounds(bounds)} {_show(right, show.UNARY)}"
         case syntax.Quantified(kind, variable, domain, body, _):
@@ -133,7 +133,7 @@ def _range(variable: str, domain: syntax.Name | syntax.Call | syntax.Group) -> s
             return rf"{variable}\in {symbol(lane)}"
         case syntax.Call("adjacentLanes", (syntax.Name(lane, _),), _):
             return rf"{variable}\in\mathit{{adjLanes}}({symbol(lane)})"
-        case _:
+        case syntax.Name() | syntax.Call():
             return rf"{variable}\in {_show(domain, show.ATOM)}"
 
 
@@ -149,7 +149,7 @@ def _number(value: Fraction) -> str:
 
 
 def symbol(name: str) -> str:
-    """A name as the paper sets it: ``a_max_lat`` as a_max with lat above, ``POV1`` as POV with index 1.
+    """Return a name as the paper sets it: ``a_max_lat`` as a_max with lat above, ``POV1`` with index 1.
 
     >>> symbol("behaviourSV_4")
     '\\\\mathit{behaviourSV}_{4}'

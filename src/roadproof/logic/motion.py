@@ -1,10 +1,10 @@
-"""What is true of every motion, as formulas: schemas that terms and formulas are put into.
+"""Axiom schemas of motion: formulas that hold on every motion, whatever terms and formulas are put in.
 
 A *motion* gives vehicles positions and speeds for all time such that positions are the integrals of speeds
-and speeds those of accelerations (``SIGNALS[…].rate_of``), which are bounded in bounded time; sizes,
-parameters and numbers never change. So positions and speeds are continuous, and for an affine combination
-e of them with the rate e': e(t) - e(T) is the integral of e' from T to t. Every drive is a motion. Each
-schema says which theorem makes it true; docs/explanation/motion.md has the arguments, and
+and speeds those of accelerations (``SIGNALS[…].rate_of``), which are bounded in bounded time. Sizes,
+parameters and numbers never change. So positions and speeds are continuous. Let e = left - right be an affine
+combination of them with the rate e'; then e(t) - e(T) is the integral of e' from T to t. Every drive is a
+motion. Each schema names the theorem that makes it true; docs/explanation/motion.md has the arguments, and
 proofs/kernel/Schemas.v proves them.
 """
 
@@ -22,22 +22,22 @@ from roadproof.world.signals import SIGNALS, SignalName
 RATES: Mapping[SignalName, SignalName] = {
     about.rate_of: name for name, about in SIGNALS.items() if about.rate_of is not None
 }
-"""The rate of change of each signal that is an integral; the others may jump."""
+"""The rate of change of each signal that is an integral; the other signals may jump."""
 
 
 # --- terms ---------------------------------------------------------------------------------------
 
 
 def is_rigid(term: Term) -> bool:
-    """Whether ``term`` has one value at all times."""
+    """Return whether ``term`` is constant in time."""
     return not any(isinstance(leaf, t.Varying) for leaf in t.leaves(term))
 
 
 def is_continuous(term: Term) -> bool:
-    """Whether ``term`` is a continuous function of time on every motion.
+    """Return whether ``term`` is a continuous function of time on every motion.
 
-    Sums, products, powers, maxima and minima of continuous functions are, quotients by what never changes
-    too; an inverse is not, and neither is a signal that is no integral.
+    Sums, products, powers, maxima and minima of continuous functions are continuous, and so are their
+    quotients by constants. Inverses and signals that are no integrals are not.
     """
     if isinstance(term, t.Inverse):
         return False
@@ -45,15 +45,15 @@ def is_continuous(term: Term) -> bool:
         return False
     if isinstance(term, t.Signal):
         return term.name in RATES
-    if isinstance(term, t.Own):
+    if isinstance(term, t.CustomSignal):
         return False
     return all(map(is_continuous, t.children(term)))
 
 
 def rate(term: Term) -> Term | None:
-    """The rate of change of an affine combination of signals; None where it never changes.
+    """Return the rate of change of an affine combination of signals; None if it is constant.
 
-    Raises ``ValueError`` where ``term`` is no affine combination, or has a signal that is no integral.
+    Raises ``ValueError`` if ``term`` is no affine combination, or has a signal that is no integral.
     """
     if is_rigid(term):
         return None
@@ -74,13 +74,19 @@ def rate(term: Term) -> Term | None:
             changed = rate(numerator)
             assert changed is not None
             return t.Quotient(changed, denominator)
-        case _:
+        case (
+            t.Signal() | t.CustomSignal() | t.Power() | t.Quotient() | t.Maximum() | t.Minimum() | t.Inverse()
+        ):
             pass
+        case t.Number() | t.Parameter() | t.Variable() | t.Size():
+            pass
+        case _:
+            assert_never(term)
     raise ValueError("no affine combination of signals that have a rate")
 
 
 def rates(left: Term, right: Term) -> tuple[Term, Term]:
-    """The rates of two sides of a comparison, of which one moves. Raises ``ValueError``."""
+    """Return the rates of two sides of a comparison, at least one of which changes. Raises ``ValueError``."""
     changes = rate(left), rate(right)
     moving = next((x for x in changes if x is not None), None)
     if moving is None:
@@ -90,21 +96,21 @@ def rates(left: Term, right: Term) -> tuple[Term, Term]:
 
 
 def _dimension(term: Term) -> t.Dimension:
-    """The dimension that 0 is printed with beside ``term``; that of a signal, or none."""
+    """Return the dimension of a signal, in which a 0 beside it is printed; no dimension for other terms."""
     return t.SIGNAL_DIMENSIONS[term.name] if isinstance(term, t.Signal) else (0, 0)
 
 
 def add(*terms: Term) -> Term:
-    """A sum without zeros, as one number where all are numbers of one dimension."""
+    """Return a sum without zeros; numbers of one dimension are added to one number."""
     known = [x for x in terms if isinstance(x, t.Number)]
     if len(known) == len(terms) and len({x.dimension for x in known}) == 1:
         return t.number(sum((x.value for x in known), Fraction(0)), known[0].dimension)
-    kept = tuple(x for x in terms if t.constant_value(x) != 0)
-    return kept[0] if len(kept) == 1 else t.Sum(kept or terms[:1])
+    nonzero = tuple(x for x in terms if t.constant_value(x) != 0)
+    return nonzero[0] if len(nonzero) == 1 else t.Sum(nonzero or terms[:1])
 
 
 def _times(*terms: Term) -> Term:
-    """A product, as one number where all are numbers."""
+    """Return a product; numbers are multiplied to one number."""
     known = [x for x in terms if isinstance(x, t.Number)]
     if len(known) == len(terms):
         metres, seconds = (sum(x.dimension[k] for x in known) for k in (0, 1))
@@ -116,11 +122,12 @@ def _times(*terms: Term) -> Term:
 
 
 def is_open(formula: Formula, positive: bool = True) -> bool:
-    """Whether the instants at which a state ``formula`` is true (false: not ``positive``) are an open set.
+    """Return whether the instants with ``formula`` true (false, if not ``positive``) form an open set.
 
-    Strict comparisons of continuous terms are open, and so is occupying a lanelet, since boxes and lanelets
-    overlap by strict comparisons of positions; finite unions and intersections of open sets are open, and a
-    road has finitely many elements. Told by form alone: False may mean that it is not known.
+    ``formula``: a state formula. Strict comparisons of continuous terms are open. Occupying a lanelet is,
+    too, since boxes and lanelets overlap by strict comparisons of positions. Finite unions and intersections
+    of open sets are open, and a road has finitely many elements. The test is syntactic: False may mean "not
+    known".
     """
     match formula:
         case f.Truth():
@@ -142,46 +149,46 @@ def is_open(formula: Formula, positive: bool = True) -> bool:
 
 
 def at_most(left: Term, right: Term) -> Formula:
-    """What is at most so much is more only after an instant at which it is more, and grows.
+    """Return the schema: if e <= 0, then e > 0 only after an instant at which e > 0 and e' > 0.
 
-    Were e <= 0 at T and e > 0 at t, let r be the last instant up to t with e <= 0, which there is, since e is
-    continuous. If e' <= 0 wherever e > 0 between T and t, then e(t) = e(r) + the integral of e' from r to t
-    <= 0. Raises ``ValueError``.
+    Proof: Let e <= 0 at T and e > 0 at t, and let r be the last instant before t with e <= 0; it exists, as e
+    is continuous. If e' <= 0 wherever e > 0 between T and t, then e(t) = e(r) + the integral of e' from r to
+    t <= 0. Raises ``ValueError``.
     """
-    kept = f.Compare(left, "<=", right)
-    slower = _not_faster(left, right)
-    return _always(kept, f.negation(_until(f.disjunction(kept, slower), f.negation(kept))))
+    ordered = f.Compare(left, "<=", right)
+    slower = _rate_not_greater(left, right)
+    return _always(ordered, f.negation(_until(f.disjunction(ordered, slower), f.negation(ordered))))
 
 
 def below(left: Term, right: Term) -> Formula:
-    """What is below stays below as long as it does not grow.
+    """Return the schema: e < 0 stays true as long as e' <= 0.
 
-    Were e < 0 at T, e' <= 0 from T on and before t, then e(t) = e(T) + the integral of e' <= e(T) < 0.
-    Raises ``ValueError``.
+    Proof: with e' <= 0 from T to t, e(t) = e(T) + the integral of e' <= e(T) < 0. Raises ``ValueError``.
     """
-    kept = f.Compare(left, "<", right)
-    slower = _not_faster(left, right)
-    return _always(kept, f.negation(_until(slower, f.negation(kept))))
+    ordered = f.Compare(left, "<", right)
+    slower = _rate_not_greater(left, right)
+    return _always(ordered, f.negation(_until(slower, f.negation(ordered))))
 
 
 def meets(left: Term, right: Term) -> Formula:
-    """What is below and not for ever has a first instant at which it is not, and is level there.
+    """Return the schema: if e < 0, then either for ever, or some first instant has e >= 0, and e = 0 there.
 
-    The intermediate value theorem: e >= 0 is a closed set of instants, so it has a first one, up to which
-    e < 0; e is continuous, so e = 0 there. Raises ``ValueError`` where a side may jump.
+    Proof by the intermediate value theorem: e >= 0 on a closed set of instants, so it has a first one, before
+    which e < 0; e is continuous, so e = 0 there. Raises ``ValueError`` if a side may jump.
     """
     if not (is_continuous(left) and is_continuous(right)):
         raise ValueError("a side may jump")
-    kept = f.Compare(left, "<", right)
+    ordered = f.Compare(left, "<", right)
     level = f.conjunction(f.Compare(left, "<=", right), f.Compare(left, ">=", right))
-    return _always(kept, f.disjunction(f.Always(f.FOREVER, kept), _until(kept, level)))
+    return _always(ordered, f.disjunction(f.Always(f.FOREVER, ordered), _until(ordered, level)))
 
 
 def leaves(inside: Formula) -> Formula:
-    """What is open and left has a first instant outside.
+    """Return the schema: an open condition that holds either holds for ever, or has a first instant without
+    it.
 
-    The instants outside are a closed set, so it has a first one. Raises ``ValueError`` where ``inside`` is
-    not open by its form.
+    Proof: the instants outside form a closed set, which has a first one. Raises ``ValueError`` unless the
+    form of ``inside`` shows that it is open.
     """
     if not is_open(inside):
         raise ValueError("it is not open: its comparisons must be strict, and of what cannot jump")
@@ -190,73 +197,74 @@ def leaves(inside: Formula) -> Formula:
 
 
 def within(left: Term, right: Term, speed: Term, time: Term) -> Formula:
-    """What is at most so much, and grows by at most ``speed``, is little more within a bounded ``time``.
+    """Return the schema: after e <= 0, while e' <= ``speed``, e stays below a bound for a bounded ``time``.
 
-    With e' <= r before T + t and t <= d: e(T + t) <= e(T) + r·t <= max(0, r)·d. Raises ``ValueError``.
+    Proof: with e' <= r before T + t and t <= d, e(T + t) <= e(T) + r·t <= max(0, r)·d. Raises ``ValueError``.
     """
-    most = _times(_positive(speed), time)
-    grown = f.Compare(left, "<=", add(right, most))
-    slow = _at_speed(left, right, speed, time)
-    return _always(f.Compare(left, "<=", right), f.negation(f.Until(slow, _up_to(time), f.negation(grown))))
+    margin = _times(_positive(speed), time)
+    bounded = f.Compare(left, "<=", add(right, margin))
+    slow = _rate_at_most(left, right, speed, time)
+    return _always(f.Compare(left, "<=", right), f.negation(f.Until(slow, _up_to(time), f.negation(bounded))))
 
 
 def after(left: Term, right: Term, speed: Term, time: Term) -> Formula:
-    """What is at most so much, and grows by at most ``speed`` for a ``time``, is bounded after it.
+    """Return the schema: if e <= 0, and e' <= ``speed`` for a ``time``, then e is bounded at its end.
 
-    With e' <= r from T to T + d: e(T + d) <= e(T) + r·d. Raises ``ValueError``.
+    Proof: with e' <= r from T to T + d, e(T + d) <= e(T) + r·d. Raises ``ValueError``.
     """
-    grown = f.Compare(left, "<=", add(right, _times(speed, time)))
-    slow = f.Always(_up_to(time), _at_speed(left, right, speed, time))
+    bounded = f.Compare(left, "<=", add(right, _times(speed, time)))
+    slow = f.Always(_up_to(time), _rate_at_most(left, right, speed, time))
     premise = f.conjunction(f.Compare(left, "<=", right), slow)
-    return _always(premise, f.Always(f.Interval(time, time), grown))
+    return _always(premise, f.Always(f.Interval(time, time), bounded))
 
 
 def within_twice(left: Term, right: Term, speed: Term, growth: Term, time: Term) -> Formula:
-    """What is at most so much and grows at a bounded rate is little more within a bounded ``time``.
+    """Return the schema: after e <= 0 and e' <= ``speed``, while e'' <= ``growth``, e stays below a bound.
 
-    With e(T) <= 0, e'(T) <= v, and e'' <= r before T + t, t <= d: e'(T + u) <= v + r·u for u <= t, so that
-    e(T + t) <= v·t + r·t²/2 <= max(0, v)·d + max(0, r)·d²/2. Raises ``ValueError``.
+    Proof: let e(T) <= 0, e'(T) <= v, and e'' <= r before T + t, t <= d. Then e'(T + u) <= v + r·u for u <= t,
+    so that e(T + t) <= v·t + r·t²/2 <= max(0, v)·d + max(0, r)·d²/2. Raises ``ValueError``.
     """
-    most = add(_times(_positive(speed), time), _half_square(_positive(growth), time))
-    grown = f.Compare(left, "<=", add(right, most))
-    slow = _at_growth(left, right, growth, time)
-    premise = f.conjunction(f.Compare(left, "<=", right), _at_speed(left, right, speed, time))
-    return _always(premise, f.negation(f.Until(slow, _up_to(time), f.negation(grown))))
+    margin = add(_times(_positive(speed), time), _half_square(_positive(growth), time))
+    bounded = f.Compare(left, "<=", add(right, margin))
+    slow = _second_rate_at_most(left, right, growth, time)
+    premise = f.conjunction(f.Compare(left, "<=", right), _rate_at_most(left, right, speed, time))
+    return _always(premise, f.negation(f.Until(slow, _up_to(time), f.negation(bounded))))
 
 
 def after_twice(left: Term, right: Term, speed: Term, growth: Term, time: Term) -> Formula:
-    """What is at most so much, and grows at a bounded rate for a ``time``, is bounded after it.
+    """Return the schema: with e <= 0, e' <= ``speed``, and e'' <= ``growth`` for a ``time``, e ends below a
+    bound.
 
-    With e(T) <= 0, e'(T) <= v, and e'' <= r from T to T + d: e'(T + u) <= v + r·u for u <= d, so that
-    e(T + d) <= v·d + r·d²/2. Raises ``ValueError``.
+    Proof: let e(T) <= 0, e'(T) <= v, and e'' <= r from T to T + d. Then e'(T + u) <= v + r·u for u <= d, so
+    that e(T + d) <= v·d + r·d²/2. Raises ``ValueError``.
     """
-    most = add(_times(speed, time), _half_square(growth, time))
-    grown = f.Compare(left, "<=", add(right, most))
-    slow = f.Always(_up_to(time), _at_growth(left, right, growth, time))
-    start = f.conjunction(f.Compare(left, "<=", right), _at_speed(left, right, speed, time))
-    return _always(f.conjunction(start, slow), f.Always(f.Interval(time, time), grown))
+    margin = add(_times(speed, time), _half_square(growth, time))
+    bounded = f.Compare(left, "<=", add(right, margin))
+    slow = f.Always(_up_to(time), _second_rate_at_most(left, right, growth, time))
+    start = f.conjunction(f.Compare(left, "<=", right), _rate_at_most(left, right, speed, time))
+    return _always(f.conjunction(start, slow), f.Always(f.Interval(time, time), bounded))
 
 
 def limit(formula: Formula) -> Formula:
-    """What a model of a vehicle says of a signal, at all times."""
+    """Return a limit of a vehicle model as a formula: it holds at all times."""
     return f.Always(f.FOREVER, formula)
 
 
-def _at_speed(left: Term, right: Term, speed: Term, time: Term) -> f.Compare:
-    """left' <= right' + speed. Raises ``ValueError`` where ``speed`` or ``time`` may change."""
+def _rate_at_most(left: Term, right: Term, speed: Term, time: Term) -> f.Compare:
+    """Return left' <= right' + speed. Raises ``ValueError`` if ``speed`` or ``time`` may change."""
     if not (is_rigid(speed) and is_rigid(time)):
         raise ValueError("rate and time may not change")
-    moved, carried = rates(left, right)
-    return f.Compare(moved, "<=", add(carried, speed))
+    left_rate, right_rate = rates(left, right)
+    return f.Compare(left_rate, "<=", add(right_rate, speed))
 
 
-def _at_growth(left: Term, right: Term, growth: Term, time: Term) -> f.Compare:
-    """left'' <= right'' + growth. Raises ``ValueError`` where ``growth`` or ``time`` may change."""
-    return _at_speed(*rates(left, right), growth, time)
+def _second_rate_at_most(left: Term, right: Term, growth: Term, time: Term) -> f.Compare:
+    """Return left'' <= right'' + growth. Raises ``ValueError`` if ``growth`` or ``time`` may change."""
+    return _rate_at_most(*rates(left, right), growth, time)
 
 
 def _half_square(growth: Term, time: Term) -> Term:
-    """growth·time²/2."""
+    """Return growth·time²/2."""
     return _times(growth, time, time, t.number(Fraction(1, 2)))
 
 
@@ -267,10 +275,10 @@ def _positive(speed: Term) -> Term:
     return speed if value >= 0 else t.number(0)
 
 
-def _not_faster(left: Term, right: Term) -> f.Compare:
-    """left' <= right'."""
-    grown, carried = rates(left, right)
-    return f.Compare(grown, "<=", carried)
+def _rate_not_greater(left: Term, right: Term) -> f.Compare:
+    """Return left' <= right'."""
+    left_rate, right_rate = rates(left, right)
+    return f.Compare(left_rate, "<=", right_rate)
 
 
 def _up_to(time: Term) -> f.Interval:
@@ -286,14 +294,14 @@ def _always(premise: Formula, conclusion: Formula) -> Formula:
 
 
 # --- inductions ----------------------------------------------------------------------------------
-# True on every trace; with numbers above zero as times, finitely many steps reach every later instant.
+# They hold on every trace. Times are numbers above zero, so finitely many steps reach every later instant.
 
 
 def steps(inside: Formula, low: Term, high: Term) -> Formula:
-    """What holds, and holds again ``low`` to ``high`` after each instant at which it does, never ends.
+    """Return the schema: if p holds, and again ``low`` to ``high`` after each time, it recurs for ever.
 
-    With p at T there are instants T = t0 < t1 < … with p and t(n) + low <= t(n+1) <= t(n) + high. They pass
-    every bound, since low > 0, so that every later instant has one of them at most ``high`` after it. Raises
+    Proof: from p at T there are instants T = t0 < t1 < … with p and t(n) + low <= t(n+1) <= t(n) + high. They
+    pass every bound, since low > 0, so every later instant has one of them at most ``high`` after it. Raises
     ``ValueError``.
     """
     _check(low)
@@ -304,13 +312,13 @@ def steps(inside: Formula, low: Term, high: Term) -> Formula:
 
 
 def lasts(inside: Formula, time: Term) -> Formula:
-    """What holds, and lasts for a ``time`` after each instant at which it holds, holds for ever.
+    """Return the schema: if p holds, and lasts for a ``time`` whenever it holds, it holds for ever.
 
-    With p at T it holds from T + n·d to T + (n + 1)·d for every n. Raises ``ValueError``.
+    Proof: from p at T it holds from T + n·d to T + (n + 1)·d for every n. Raises ``ValueError``.
     """
     _check(time)
-    kept = f.Always(f.FOREVER, f.implication(inside, f.Always(f.Interval(f.ZERO, time), inside)))
-    return f.Always(f.FOREVER, f.implication(f.conjunction(inside, kept), f.Always(f.FOREVER, inside)))
+    persists = f.Always(f.FOREVER, f.implication(inside, f.Always(f.Interval(f.ZERO, time), inside)))
+    return f.Always(f.FOREVER, f.implication(f.conjunction(inside, persists), f.Always(f.FOREVER, inside)))
 
 
 def _check(time: Term) -> None:

@@ -1,7 +1,7 @@
-"""What all trees of this package are made of: frozen dataclasses that remember their hash.
+"""The base of all syntax trees, terms and formulas: frozen dataclasses that cache their hash.
 
-Identity is structure: two nodes are equal when they are built alike, whatever they are called.
-Formulas share sub-trees, so without the remembered hash every look-up would walk the whole tree.
+Two nodes are equal if they have the same structure, whatever definitions they come from. Formulas share
+sub-trees; without the cached hash every look-up in a dictionary would walk the whole tree.
 """
 
 from collections.abc import Callable
@@ -14,62 +14,67 @@ from roadproof.runtime.records import dataclass
 T = TypeVar("T")
 N = TypeVar("N")
 
-# In place of a fact of a node: it was not asked for yet; it is the node itself, which would be a cycle.
+# Placeholders for a cached value: not computed yet; the node itself, which would make a cycle.
 _UNKNOWN, _ITSELF = object(), object()
 
 
 @dataclass_transform(frozen_default=True)
 def node(cls: type[T]) -> type[T]:
     """Make ``cls`` a frozen dataclass whose hash is computed once per object."""
-    made = dataclass(frozen=True, eq=False)(cls)
+    node_class = dataclass(frozen=True, eq=False)(cls)
     fields = _fields(cls)
 
     def remembered(self: Any) -> int:
+        """Return the hash, computed at the first call."""
         try:
-            known: int = self._hash
+            stored_hash: int = self._hash
         except AttributeError:
-            known = hash(fields(self))
-            object.__setattr__(self, "_hash", known)
-        return known
+            stored_hash = hash(fields(self))
+            object.__setattr__(self, "_hash", stored_hash)
+        return stored_hash
 
     def state(self: Any) -> dict[str, object]:
-        """What is pickled: all but what is remembered; another process would compute another hash."""
+        """Return the fields without cached values, for pickle: another process would compute another hash."""
         return {name: value for name, value in self.__dict__.items() if name[0] != "_"}
 
     def equals(self: Any, other: object) -> bool:
-        """Structural, but settled at once for the same object and for different hashes."""
+        """Compare structure; the same object and different hashes are decided at once."""
         if self is other:
             return True
         if type(self) is not type(other) or hash(self) != hash(other):
             return False
         return bool(fields(self) == fields(other))
 
-    made.__eq__ = equals  # type: ignore[method-assign]
-    made.REMEMBERS = True  # type: ignore[attr-defined]  # its digest, too (runtime.canonical)
-    made.__getstate__ = state  # type: ignore[method-assign]
-    made.__hash__ = remembered  # type: ignore[method-assign]
-    return made
+    node_class.__eq__ = equals  # type: ignore[method-assign]
+    node_class.REMEMBERS = True  # type: ignore[attr-defined]  # its digest, too (runtime.canonical)
+    node_class.__getstate__ = state  # type: ignore[method-assign]
+    node_class.__hash__ = remembered  # type: ignore[method-assign]
+    return node_class
 
 
 def _fields(cls: type) -> Callable[[Any], object]:
-    """A function that gives the values of all fields of an instance, as a tuple."""
+    """Return a function that gives the values of all fields of an instance, as a tuple."""
     names = tuple(cls.__annotations__)
-    if len(names) < 2:  # attrgetter gives one value as it is, and does not take none
+    if len(names) < 2:  # attrgetter returns a tuple only for two or more names
         return lambda of: tuple([getattr(of, name) for name in names])
     return attrgetter(*names)
 
 
-def once(fact: Callable[[N], T]) -> Callable[[N], T]:
-    """``fact`` of a node, worked out once per object. It must depend on nothing but the node."""
+def memoised(fact: Callable[[N], T]) -> Callable[[N], T]:
+    """Cache ``fact(node)`` on the node itself, so that it is computed once per object.
+
+    ``fact`` must depend on the node alone.
+    """
     key = f"_{fact.__module__}.{fact.__name__}"
 
     @wraps(fact)
-    def known(of: N) -> T:
-        kept = getattr(of, key, _UNKNOWN)
-        if kept is _UNKNOWN:
-            kept = fact(of)
-            object.__setattr__(of, key, _ITSELF if kept is of else kept)
-        found: T = of if kept is _ITSELF else kept  # type: ignore[assignment]
-        return found
+    def cached(node: N) -> T:
+        """Return the stored value, or compute and store it."""
+        value = getattr(node, key, _UNKNOWN)
+        if value is _UNKNOWN:
+            value = fact(node)
+            object.__setattr__(node, key, _ITSELF if value is node else value)
+        result: T = node if value is _ITSELF else value  # type: ignore[assignment]
+        return result
 
-    return known
+    return cached

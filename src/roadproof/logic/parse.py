@@ -1,14 +1,18 @@
-"""Text to syntax tree. User text reaches nothing but this grammar: no eval, no sympify."""
+"""Parsing of specification files and claims to syntax trees.
+
+User text reaches this grammar alone: no ``eval``, no ``sympify``.
+"""
 
 import re
 from functools import lru_cache
-from typing import cast
+from typing import assert_never, cast
 
 from roadproof.errors import Position, TextError
 from roadproof.logic import syntax
 from roadproof.logic.grammar import version
 from roadproof.logic.syntax import Expression, Statement
-from roadproof.runtime.cache import remembered
+from roadproof.runtime.cache import cached
+from roadproof.runtime.records import dataclass
 
 DEEPEST_NESTING = 100
 LONGEST_CLAIM = 100_000
@@ -16,11 +20,20 @@ _CALL = re.compile(r"\w+(?:@\w+)?\(\w+(?:, ?\w+)*\)")
 _PARENTHESES = re.compile(r'[()\[\]{}]|"[^"\n]*"|#[^\n]*')
 
 
+@dataclass(frozen=True)
+class ParseResult:
+    """The statements that were parsed, all errors, and patterns of the names that unparsed pieces declare."""
+
+    statements: tuple[Statement, ...]
+    errors: tuple[TextError, ...] = ()
+    lost: tuple[re.Pattern[str], ...] = ()
+
+
 @lru_cache(maxsize=64)
 def parse_library(text: str, source: str) -> tuple[Statement, ...]:
-    """The statements of a specification file. Raises ``TextError``.
+    """Return the statements of a specification file. Raises ``TextError``.
 
-    A check reads the files beside evidence several times, so trees are kept in memory.
+    Trees stay in memory, because a check reads the files beside evidence several times.
     """
     statements = cast(tuple[Statement, ...], _parse(text, source, "library"))
     for definition in _definitions(statements):
@@ -29,14 +42,14 @@ def parse_library(text: str, source: str) -> tuple[Statement, ...]:
 
 
 def parse_bundled(text: str, source: str) -> tuple[Statement, ...]:
-    """As ``parse_library``, for text that is parsed in every run: its tree is remembered from run to run."""
+    """Return the statements of a text that is part of roadproof; the tree is cached on disk between runs."""
     made_of = "\0".join((source, text, version())).encode()
-    return remembered("tree", made_of, lambda: parse_library(text, source))
+    return cached("tree", made_of, lambda: parse_library(text, source))
 
 
 @lru_cache(maxsize=256)
 def parse_claim(text: str, source: str = "claim") -> syntax.Claim:
-    """A formula, with an optional ``given a, b: vehicle; L: lane:`` in front. Raises ``TextError``."""
+    """Parse a formula, with an optional ``given a, b: vehicle; L: lane:`` in front. Raises ``TextError``."""
     if len(text) > LONGEST_CLAIM:
         raise TextError(
             f"the formula is too long: {len(text)} characters, at most {LONGEST_CLAIM} are allowed",
@@ -49,9 +62,9 @@ def parse_claim(text: str, source: str = "claim") -> syntax.Claim:
 
 
 def _remembered_call(text: str, source: str) -> syntax.Claim:
-    """A claim that is one call, as scenarios are: many runs read the same, so its tree is remembered."""
+    """Parse a claim that is one call, such as a scenario; its tree is cached on disk between runs."""
     made_of = "\0".join((text, version())).encode()
-    return remembered("call", made_of, lambda: _parsed_claim(text, source))
+    return cached("call", made_of, lambda: _parsed_claim(text, source))
 
 
 def _parsed_claim(text: str, source: str) -> syntax.Claim:
@@ -59,33 +72,37 @@ def _parsed_claim(text: str, source: str) -> syntax.Claim:
 
 
 def _definitions(statements: tuple[Statement, ...]) -> list[syntax.Definition]:
-    found: list[syntax.Definition] = []
+    definitions: list[syntax.Definition] = []
     for statement in statements:
         match statement:
             case syntax.Definition():
-                found.append(statement)
+                definitions.append(statement)
             case syntax.SignalDeclaration() if statement.body is not None:
-                found.append(syntax.Definition(statement.name, (), "", statement.body, statement.at))
+                definitions.append(syntax.Definition(statement.name, (), "", statement.body, statement.at))
             case syntax.EachBlock() | syntax.SetBlock() | syntax.WhenBlock():
-                found += statement.definitions
-            case _:
+                definitions += statement.definitions
+            case syntax.SignalDeclaration() | syntax.ParameterDeclaration() | syntax.OptionDeclaration():
                 pass
-    return found
+            case syntax.LaneDeclaration() | syntax.TitleDeclaration():
+                pass
+            case _:
+                assert_never(statement)
+    return definitions
 
 
 def _check_parentheses(text: str) -> None:
-    """Refuse text with parentheses deeper than trees may be; those in strings and comments do not count."""
+    """Raise ``TextError`` where parentheses are nested too deep; strings and comments do not count."""
     depth = 0
-    for found in _PARENTHESES.finditer(text):
-        if found[0] in "([{":
+    for match in _PARENTHESES.finditer(text):
+        if match[0] in "([{":
             depth += 1
-        elif found[0] in ")]}":
+        elif match[0] in ")]}":
             depth -= 1
         if depth > DEEPEST_NESTING:
-            before = text[: found.start()]
+            before = text[: match.start()]
             raise TextError(
                 f"parentheses are nested too deep: at most {DEEPEST_NESTING} are allowed",
-                Position(before.count("\n") + 1, found.start() - before.rfind("\n")),
+                Position(before.count("\n") + 1, match.start() - before.rfind("\n")),
                 "Give the parts of the formula names with def.",
             )
 

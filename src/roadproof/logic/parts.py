@@ -1,6 +1,7 @@
-"""The parts of a conjunction, through the names of definitions."""
+"""The parts of a conjunction; definitions are looked through, and shown by name."""
 
 from collections.abc import Iterable, Iterator
+from typing import assert_never
 
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -9,17 +10,21 @@ from roadproof.logic.show import text
 
 
 def parts_of(formula: Formula) -> Iterator[Formula]:
-    """Yield the parts of a conjunction, through the names of definitions, down to temporal operators."""
+    """Yield the parts of a conjunction, also those inside definitions, down to temporal operators."""
     match formula:
         case f.And(every):
             for part in every:
                 yield from parts_of(part)
         case f.Application(_, _, body) if isinstance(body, f.And | f.Application) and not f.is_state(body):
             yield from parts_of(body)
-        case _:
+        case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.Or():
             yield formula
+        case f.Until() | f.Eventually() | f.Always() | f.Application():
+            yield formula
+        case _:
+            assert_never(formula)
 
 
 def texts_of(parts: Iterable[Formula]) -> tuple[str, ...]:
-    """Return parts of a formula as texts, definitions by name."""
+    """Return each part of a formula as text, with definitions called by name."""
     return tuple(text(as_syntax(part)) for part in parts)

@@ -1,7 +1,8 @@
-"""Specification files with mistakes: what can be read of them, and all that cannot.
+"""Parsing of specification files with mistakes: all statements that parse, and all errors.
 
-A file is cut where a statement begins, and read piece by piece. A piece that does not parse is left out; the
-names that it would have declared are known, so that nobody is told that they do not exist.
+The file is cut at the beginnings of statements, and each piece is parsed by itself. A piece that does not
+parse is left out. The names that it would have declared are recorded, so that their uses cause no further
+errors.
 """
 
 import re
@@ -11,7 +12,7 @@ from functools import lru_cache
 from itertools import pairwise
 
 from roadproof.errors import Position, TextError
-from roadproof.logic.parse import parse_library
+from roadproof.logic.parse import ParseResult, parse_library
 from roadproof.logic.syntax import EachBlock, SetBlock, Statement, WhenBlock
 from roadproof.runtime.records import dataclass
 
@@ -25,39 +26,30 @@ _DECLARED = re.compile(r"^[ \t]*(?:def|param|signal)[ \t]+((?:[A-Za-z0-9_]|\{[^{
 _INDEX = re.compile(r"\\\{[^{}]*\\\}")
 
 
-@dataclass(frozen=True)
-class ParseResult:
-    """What was read of a text, what was not, and how names look that what was not read declares."""
-
-    statements: tuple[Statement, ...]
-    errors: tuple[TextError, ...] = ()
-    lost: tuple[re.Pattern[str], ...] = ()
-
-
 def parse_pieces(text: str, source: str) -> ParseResult:
-    """All statements of a specification file that parse, and every error, in order. Never raises.
+    """Return all statements of a specification file that parse, and every error, in order. Never raises.
 
-    Pieces are kept, so that a text of which one statement was changed is read in the time of that one.
+    Parsed pieces are cached: after a change of one statement only that statement is parsed again.
     """
     statements: list[Statement] = []
     errors: list[TextError] = []
     lost: list[re.Pattern[str]] = []
     block: _Piece | None = None
     for piece in _pieces(text):
-        read = _read(piece, source)
-        if isinstance(read, TextError):
-            errors.append(_placed(read, text, piece))
+        parsed = _parse_piece(piece, source)
+        if isinstance(parsed, TextError):
+            errors.append(_relocate(parsed, text, piece))
             lost += _names_in(piece.text)
         else:
-            joined = block is not None and piece.outer == block.outer and block.line < piece.line
-            statements = _join(statements, read) if joined else [*statements, *read]
+            continues = block is not None and piece.outer == block.outer and block.line < piece.line
+            statements = _join(statements, parsed) if continues else [*statements, *parsed]
         block = (block if piece.inner else piece) if piece.opens else block if piece.heads else None
     return ParseResult(tuple(statements), tuple(errors), tuple(lost))
 
 
 @dataclass(frozen=True)
 class _Piece:
-    """A statement, at which line and column it begins, and the heads of blocks that it is in or opens."""
+    """A statement, its first line and column, and the heads of the blocks that it is in or opens."""
 
     text: str
     line: int
@@ -72,19 +64,19 @@ class _Piece:
 
     @property
     def inner(self) -> bool:
-        """Whether it is in a block that it does not open itself."""
+        """Return whether the piece is in a block that it does not open itself."""
         return len(self.heads) > self.opens
 
     @property
     def alone(self) -> str:
-        """The statement with nothing around it but its block, at its own line and column."""
+        """The statement in its block, without its neighbours, at its own line and column."""
         place = "\n" * (self.line - 1) + " " * (self.column - 1)
         above = self.heads[: len(self.heads) - self.opens]
         return f"{''.join(above)}{place}{self.text}{'}' * len(self.heads) if self.text else ''}"
 
 
 @lru_cache(maxsize=1024)
-def _read(piece: _Piece, source: str) -> tuple[Statement, ...] | TextError:
+def _parse_piece(piece: _Piece, source: str) -> tuple[Statement, ...] | TextError:
     try:
         return parse_library(piece.alone, source)
     except TextError as error:
@@ -92,25 +84,25 @@ def _read(piece: _Piece, source: str) -> tuple[Statement, ...] | TextError:
 
 
 def _join(statements: list[Statement], more: tuple[Statement, ...]) -> list[Statement]:
-    """Definitions of a block, read alone, put back into it."""
+    """Append definitions of a block, which were parsed alone, to the block."""
     block = statements[-1]
-    inside = [x for x in more if isinstance(x, EachBlock | SetBlock | WhenBlock)]
-    if not isinstance(block, EachBlock | SetBlock | WhenBlock) or not inside:
+    blocks = [x for x in more if isinstance(x, EachBlock | SetBlock | WhenBlock)]
+    if not isinstance(block, EachBlock | SetBlock | WhenBlock) or not blocks:
         return statements
-    definitions = (*block.definitions, *(y for x in inside for y in x.definitions))
+    definitions = (*block.definitions, *(y for x in blocks for y in x.definitions))
     return [*statements[:-1], replace(block, definitions=definitions)]
 
 
 def _pieces(text: str) -> Iterator[_Piece]:
-    """The statements of a text, those in blocks one by one."""
-    plain = _HIDDEN.sub(lambda found: " " * len(found[0]), text)
-    starts = [found.start() for found in _START.finditer(plain)]
+    """Yield the statements of a text, those in blocks one by one."""
+    plain = _HIDDEN.sub(lambda match: " " * len(match[0]), text)
+    starts = [match.start() for match in _START.finditer(plain)]
     if plain[: starts[0] if starts else len(text)].strip():
         starts = [0, *starts]
     heads: tuple[str, ...] = ()
     for start, end in pairwise([*starts, len(text)]):
-        found = _START.match(plain, start)
-        word = "" if found is None else found[1]
+        match = _START.match(plain, start)
+        word = "" if match is None else match[1]
         while heads and not _may_stand_in(word, heads):
             yield _unclosed(text, plain, start, heads)
             heads = heads[:-1]
@@ -131,12 +123,12 @@ def _pieces(text: str) -> Iterator[_Piece]:
 
 
 def _may_stand_in(word: str, heads: tuple[str, ...]) -> bool:
-    """Definitions in any block; ``each`` in a set and in what an option says."""
+    """Return whether a statement may stand in the innermost block: ``def``, or ``each`` but in ``each``."""
     return word == "def" or (word == "each" and not heads[-1].startswith("each"))
 
 
 def _unclosed(text: str, plain: str, before: int, heads: tuple[str, ...]) -> _Piece:
-    """Nothing, where the end of a block is missing."""
+    """Return an empty piece at the place where the end of a block is missing."""
     end = len(plain[:before].rstrip())
     return _piece(text, end, end, heads)
 
@@ -147,22 +139,25 @@ def _piece(text: str, start: int, end: int, heads: tuple[str, ...] = (), opens: 
 
 
 def _closings(plain: str) -> list[int]:
-    """Where the blocks end that a definition stands in, the inner one first; nowhere where it is not last."""
-    depth, found = 0, list[int]()
+    """Return where the blocks around a definition end, inner one first; empty if none ends."""
+    depth, closings = 0, list[int]()
     for brace in re.finditer(r"[{}]", plain):
         depth += 1 if brace[0] == "{" else -1
         if depth < 0:
-            found.append(brace.start())
+            closings.append(brace.start())
             depth = 0
-    return found
+    return closings
 
 
-def _placed(error: TextError, text: str, piece: _Piece) -> TextError:
-    """The error in the whole text; what is missing at the end of a statement is told at its end."""
-    said = _COMMENT.sub("", piece.text).rstrip()
-    above, _, below = said.rpartition("\n")
+def _relocate(error: TextError, text: str, piece: _Piece) -> TextError:
+    """Return the error with its place in the whole text.
+
+    An error beyond the last character of a statement, such as a missing operand, is moved to its end.
+    """
+    statement = _COMMENT.sub("", piece.text).rstrip()
+    above, _, below = statement.rpartition("\n")
     last = Position(
-        piece.line + said.count("\n"), len(below) + (1 if above or "\n" in said else piece.column)
+        piece.line + statement.count("\n"), len(below) + (1 if above or "\n" in statement else piece.column)
     )
     if not piece.text:
         shown = TextError(f"'{piece.heads[-1]}' is not closed", last, "Write } where it ends.")
@@ -174,5 +169,5 @@ def _placed(error: TextError, text: str, piece: _Piece) -> TextError:
 
 
 def _names_in(piece: str) -> Iterator[re.Pattern[str]]:
-    for found in _DECLARED.finditer(piece):
-        yield re.compile(_INDEX.sub(r"\\w+", re.escape(found[1])))
+    for match in _DECLARED.finditer(piece):
+        yield re.compile(_INDEX.sub(r"\\w+", re.escape(match[1])))

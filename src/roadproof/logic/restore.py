@@ -1,7 +1,7 @@
-"""Formulas back to syntax trees, so that what was computed can be shown and read again.
+"""Conversion of formulas and terms back to syntax trees, so that computed formulas can be printed and read.
 
-Elaborating the result gives the same formula again, up to constants: a number that no text can hold,
-such as 1/3 s, comes back as the quotient 1/3 * 1 s, and sums of three as sums of two.
+Elaborating the result gives the same formula, up to constants: a number without a finite decimal, such as 1/3
+s, becomes the quotient 1/3 * 1 s, and a sum of three terms becomes nested sums of two.
 """
 
 import re
@@ -23,15 +23,15 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 def as_syntax(formula: Formula, expand: bool = False) -> Expression:
-    """The syntax tree of ``formula``; definitions are called by name, or written out with ``expand``.
+    """Return the syntax tree of ``formula``; definitions are called by name, or written out with ``expand``.
 
-    A definition whose arguments have no names of the language (a number, a lane of a road file) is
-    written out in any case.
+    A definition is always written out if an argument, such as a lane of a road file, is no name of the
+    language.
     """
     match formula:
         case f.Truth(value):
             return Literal_(value)
-        case f.Compare(t.Own(truth=True) as own, op, _):
+        case f.Compare(t.CustomSignal(truth=True) as own, op, _):
             return term_as_syntax(own) if op == ">" else Prefix("not", term_as_syntax(own))
         case f.Compare(t.Size("kind", vehicle), op, t.Number(value, _)):
             return _kind_from(vehicle, op, value)
@@ -78,7 +78,7 @@ def _kind(vehicle: str, op: BinaryOperator, kind: Kind) -> Expression:
 
 
 def _kind_from(vehicle: str, op: f.Comparison, bound: Fraction) -> Expression:
-    """One comparison of a kind (``logic.own``): as equal to the first or the last, where it says that."""
+    """Return one comparison of a kind (``logic.custom_names``), as an equality if about the first or last."""
     first, last = bound == Fraction(3, 2), bound == len(KINDS) - Fraction(1, 2)
     if first:
         return _kind(vehicle, "=" if op == "<" else "!=", KINDS[0])
@@ -112,12 +112,12 @@ def _bounds(interval: f.Interval) -> Bounds | None:
 
 
 def _bound(term: Term) -> Expression:
-    """Where a time is expected, 0 needs no unit."""
+    """Return the bound of an interval, where 0 needs no unit."""
     return Literal_(Fraction(0)) if t.constant_value(term) == 0 else term_as_syntax(term)
 
 
 def term_as_syntax(term: Term) -> Expression:
-    """The syntax tree of a term; numbers keep their unit."""
+    """Return the syntax tree of a term; numbers keep their unit."""
     match term:
         case t.Number(value, dimension):
             return _number(value, dimension)
@@ -125,7 +125,7 @@ def term_as_syntax(term: Term) -> Expression:
             return Name(name)
         case t.Signal(name, vehicle) | t.Size(name, vehicle):
             return Call(name, (Name(vehicle),))
-        case t.Own(name, vehicle):
+        case t.CustomSignal(name, vehicle):
             return Call(name, (Name(vehicle),)) if vehicle else Name(name)
         case t.Sum(terms):
             return _sum(terms)
@@ -148,13 +148,15 @@ def term_as_syntax(term: Term) -> Expression:
 
 
 def _sum(terms: Sequence[Term]) -> Expression:
-    """A sum; terms with a minus sign in front are subtracted."""
+    """Return a sum; terms with a minus sign in front are subtracted."""
     if not terms:
         return _number(Fraction(0))
     total = term_as_syntax(terms[0])
     for term in terms[1:]:
-        made = term_as_syntax(term)
-        total = Binary("-", total, made.body) if isinstance(made, Prefix) else Binary("+", total, made)
+        operand = term_as_syntax(term)
+        total = (
+            Binary("-", total, operand.body) if isinstance(operand, Prefix) else Binary("+", total, operand)
+        )
     return total
 
 
@@ -171,7 +173,7 @@ def _number(value: Fraction, dimension: Dimension = (0, 0)) -> Expression:
 
 
 def _unit(dimension: Dimension) -> Expression:
-    """One of a unit that has no name, as powers of 1 m and 1 s: (2, -2) is (1 m)^2/(1 s)^2."""
+    """Return one unit of a dimension without a name, as powers of 1 m and 1 s: (2, -2) is (1 m)^2/(1 s)^2."""
     above: list[Expression] = []
     below: list[Expression] = []
     for unit, exponent in zip(("m", "s"), dimension, strict=True):

@@ -1,6 +1,6 @@
-"""Syntax trees to text: the inverse of ``logic.parse``, with as few parentheses as the grammar allows.
+"""Printing of syntax trees with as few parentheses as the grammar allows; the inverse of ``logic.parse``.
 
-``parse_claim(text(claim)) == claim`` for every claim that the parser can return. A formula is shown by
+``parse_claim(text(claim)) == claim`` for every claim that the parser can return. A formula is printed by
 ``text(as_syntax(formula))``.
 """
 
@@ -10,7 +10,6 @@ from itertools import groupby
 from typing import assert_never
 
 from roadproof.logic import syntax
-from roadproof.logic.restore import as_syntax as as_syntax
 from roadproof.logic.syntax import (
     LONGEST_EXPONENT,
     LONGEST_NUMBER,
@@ -21,7 +20,7 @@ from roadproof.logic.syntax import (
     Expression,
 )
 
-# How tightly the parts of the grammar bind, loosest first. A quantifier reaches as far right as it can.
+# Binding strengths of the grammar, weakest first. A quantifier extends as far right as possible.
 QUANTIFIED, IFF, IMPLIES, OR, AND, UNTIL, UNARY, COMPARISON, SUM, PRODUCT, SIGNED, POWER, ATOM = range(13)
 _LEVEL: dict[syntax.BinaryOperator, int] = {
     "<->": IFF,
@@ -40,13 +39,13 @@ _LEVEL: dict[syntax.BinaryOperator, int] = {
 }
 
 
-def declared(given: tuple[Binding, ...]) -> str:
-    """What is declared in front of a claim, as text; empty where nothing is."""
-    return text(Claim(given, syntax.Literal_(True))).removesuffix("true") if given else ""
+def declarations_text(bindings: tuple[Binding, ...]) -> str:
+    """Return the declarations in front of a claim as text; empty if there are none."""
+    return text(Claim(bindings, syntax.Literal_(True))).removesuffix("true") if bindings else ""
 
 
 def text(tree: Expression | Claim | Definition, width: int | None = None) -> str:
-    """``tree`` as the parser reads it; on lines of about ``width`` characters where that is given."""
+    """Return ``tree`` in the syntax of the parser, on lines of about ``width`` characters if given."""
     match tree:
         case Claim(given, body):
             head = f"given {_bindings(given, '; ')}: " if given else ""
@@ -58,7 +57,7 @@ def text(tree: Expression | Claim | Definition, width: int | None = None) -> str
             return f"{head.rstrip()}\n  {_show(body, QUANTIFIED, 2, width)}"
         case Definition():
             return _definition(tree, width)
-        case _:
+        case _:  # open: every expression
             return _show(tree, QUANTIFIED, 0, width)
 
 
@@ -77,7 +76,7 @@ def _bindings(bindings: tuple[Binding, ...], between: str) -> str:
 
 
 def level(expression: Expression) -> int:
-    """How tightly the outermost operator of ``expression`` binds."""
+    """Return how tightly the outermost operator of ``expression`` binds, as one of QUANTIFIED … ATOM."""
     match expression:
         case syntax.Literal_() | syntax.Name() | syntax.Call():
             return ATOM
@@ -87,8 +86,8 @@ def level(expression: Expression) -> int:
             return _LEVEL[op]
         case syntax.Chain(op, _, _):
             return AND if op == "and" else OR
-        case syntax.Temporal(op, _, _, _, _):
-            return UNTIL if op == "U" else UNARY
+        case syntax.Temporal(_, _, left, _, _):
+            return UNARY if left is None else UNTIL
         case syntax.Quantified():
             return QUANTIFIED
         case _:
@@ -96,7 +95,7 @@ def level(expression: Expression) -> int:
 
 
 def operand_levels(op: syntax.BinaryOperator) -> tuple[int, int]:
-    """How tightly the left and the right side of ``op`` have to bind to go without parentheses."""
+    """Return the levels that the left and right side of ``op`` need to stand without parentheses."""
     match op:
         case "<->":
             return IFF, IMPLIES
@@ -114,15 +113,18 @@ def operand_levels(op: syntax.BinaryOperator) -> tuple[int, int]:
             assert_never(op)
 
 
-def _show(expression: Expression, wanted: int, indent: int, width: int | None) -> str:
-    """``expression`` where something of level ``wanted`` is expected, beginning in column ``indent``."""
+def _show(expression: Expression, minimum_level: int, indent: int, width: int | None) -> str:
+    """Print ``expression``, in parentheses if it binds less tightly than ``minimum_level``.
+
+    ``indent``: the column in which it begins; ``width``: where lines are broken, None for one line.
+    """
     if isinstance(expression, syntax.Literal_):
         expression = _writable(expression)
     if width is not None:
-        line = _show(expression, wanted, indent, None)
+        line = _show(expression, minimum_level, indent, None)
         if indent + len(line) <= width:
             return line
-    if level(expression) < wanted:
+    if level(expression) < minimum_level:
         return f"({_show(expression, QUANTIFIED, indent + 1, width)})"
     broken = " " if width is None else "\n" + " " * indent
     match expression:
@@ -140,7 +142,7 @@ def _show(expression: Expression, wanted: int, indent: int, width: int | None) -
             head = "not " if op == "not" else "-"
             return head + _show(body, level(expression), indent + len(head), width)
         case syntax.Binary("^", left, right, _):
-            # A unit swallows a following ^, so that (2 m)^2 needs its parentheses.
+            # A following ^ would belong to the unit, so (2 m)^2 needs its parentheses.
             base = _show(left, ATOM + 1 if isinstance(left, syntax.Literal_) and left.unit else ATOM, 0, None)
             return f"{base}^{_show(right, ATOM, 0, None)}"
         case syntax.Binary(op, left, right, _):
@@ -182,7 +184,7 @@ def _domain(domain: syntax.Name | syntax.Call | syntax.Group) -> str:
 
 
 def _writable(literal: syntax.Literal_) -> Expression:
-    """A rational without finite decimals, which no text can hold, as a quotient; any other as it is."""
+    """Return a literal without finite decimals as a quotient, since no text can hold it; others unchanged."""
     value, at = Fraction(literal.value), literal.at
     if decimal(value) is not None:
         return literal
@@ -194,7 +196,7 @@ def _writable(literal: syntax.Literal_) -> Expression:
 
 
 def decimal(value: Fraction) -> str | None:
-    """``value`` >= 0 in decimals, exactly; None where it has no finitely many.
+    """Return ``value`` >= 0 in decimals, exactly; None if it has no finite decimal.
 
     >>> decimal(Fraction(3, 5)), decimal(Fraction(1, 3))
     ('0.6', None)
@@ -209,7 +211,7 @@ def decimal(value: Fraction) -> str | None:
 
 
 def _decimal_places(denominator: int) -> int | None:
-    """How many decimals 1/denominator has."""
+    """Return how many decimals 1/denominator has; None if infinitely many."""
     places = {2: 0, 5: 0}
     for prime in places:
         while denominator % prime == 0:

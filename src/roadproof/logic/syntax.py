@@ -1,6 +1,6 @@
-"""What the parser returns: the text as a tree, before names and units are understood.
+"""The syntax tree that the parser returns, before names and units are resolved.
 
-Terms and formulas are not yet told apart, since a call may be either. ``library.elaborate`` does that.
+Terms and formulas are one type, since a call may be either; ``library.elaborate`` tells them apart.
 """
 
 from collections.abc import Callable, Iterator
@@ -16,7 +16,7 @@ TemporalOperator: TypeAlias = Literal["F", "G", "U"]
 ParameterBound: TypeAlias = Literal["", ">", ">="]
 
 LONGEST_NUMBER = 200
-"""So many digits a number may have."""
+"""The largest number of characters of a number."""
 LONGEST_EXPONENT = 30
 
 
@@ -35,6 +35,8 @@ class Literal_:
 
 @dataclass(frozen=True)
 class Name:
+    """A name: of a parameter, vehicle, lane, signal without arguments, or kind."""
+
     name: str
     at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
@@ -65,7 +67,7 @@ class Binary:
 
 @dataclass(frozen=True)
 class Chain:
-    """``and`` or ``or`` of two or more."""
+    """``and`` or ``or`` of two or more expressions."""
 
     op: Literal["and", "or"]
     parts: tuple["Expression", ...]
@@ -94,10 +96,10 @@ class Temporal:
 
 @dataclass(frozen=True)
 class Quantified:
-    """``some`` / ``every`` variable ``in`` domain.
+    """``some`` or ``every`` variable ``in`` a domain.
 
-    The domain is ``lanes``, ``lanelets(L)``, ``zone(main)``, ``adjacentLanes(L)``, the name of a
-    group of vehicles, or ``{A, B}``.
+    The domain is ``lanes``, ``lanelets(L)``, ``zone(main)``, ``adjacentLanes(L)``, the name of a group of
+    vehicles, or ``{A, B}``.
     """
 
     kind: Literal["some", "every"]
@@ -129,7 +131,7 @@ class Binding:
 
 @dataclass(frozen=True)
 class Claim:
-    """A formula to be proved or exemplified, with the free names that it declares."""
+    """A formula to be proved or witnessed, with the names that are declared in front of it."""
 
     given: tuple[Binding, ...]
     body: Expression
@@ -168,10 +170,10 @@ class Definition:
 
 @dataclass(frozen=True)
 class SignalDeclaration:
-    """``signal name(a: vehicle): unit in [low, high] "doc" derived by body``: a signal of a user's.
+    """``signal name(a: vehicle): unit in [low, high] "doc" derived by body``: a custom signal.
 
-    ``vehicle`` is what the vehicle is called in ``body``, empty where the signal is of none. ``sort`` is a
-    unit or ``bool``; ``low`` and ``high`` are in it, None without bound.
+    ``vehicle`` is the name of the vehicle in ``body``, empty for a signal without vehicle. ``sort`` is a unit
+    or ``bool``; ``low`` and ``high`` are in that unit, None if unbounded.
     """
 
     name: str
@@ -186,7 +188,7 @@ class SignalDeclaration:
 
 @dataclass(frozen=True)
 class EachBlock:
-    """``each i in 1..8, 12 { … }``: the definitions once for every index, ``{i-8}`` replaced."""
+    """``each i in 1..8, 12 { … }``: definitions, repeated for every index with ``{i-8}`` replaced."""
 
     variable: str
     indices: tuple[int, ...]
@@ -196,7 +198,7 @@ class EachBlock:
 
 @dataclass(frozen=True)
 class SetBlock:
-    """``set name extends parent "doc" { … }``: definitions in place of the parent's, ``each`` written out."""
+    """``set name extends parent "doc" { … }``: overrides of the parent; ``each`` is expanded."""
 
     name: str
     parent: str
@@ -207,7 +209,7 @@ class SetBlock:
 
 @dataclass(frozen=True)
 class WhenBlock:
-    """``when option = value { … }``: definitions, ``each`` written out, for that value."""
+    """``when option = value { … }``: definitions for one value of an option; ``each`` is expanded."""
 
     option: str
     value: str
@@ -217,7 +219,7 @@ class WhenBlock:
 
 @dataclass(frozen=True)
 class LaneDeclaration:
-    """``lane of POV for 7, 15, 23``: in these scenarios L is this vehicle's lane at the start."""
+    """``lane of POV for 7, 15, 23``: in these scenarios L is the lane of this vehicle at the start."""
 
     vehicle: str
     scenarios: tuple[int, ...]
@@ -227,7 +229,7 @@ class LaneDeclaration:
 
 @dataclass(frozen=True)
 class TitleDeclaration:
-    """``title of 4, 12, 20 "few words" "a sentence"``: what these scenarios are called."""
+    """``title of 4, 12, 20 "few words" "a sentence"``: the title of these scenarios."""
 
     scenarios: tuple[int, ...]
     title: str
@@ -249,12 +251,12 @@ Statement: TypeAlias = (
 
 
 def is_kind(expression: Expression) -> bool:
-    """Whether an expression is ``kind(a)``: a name that it is compared with is that of a kind."""
+    """Return whether an expression is ``kind(a)``; a name that it is compared with is then a kind."""
     return isinstance(expression, Call) and expression.name == "kind"
 
 
 def parts(expression: Expression) -> tuple[Expression, ...]:
-    """The direct sub-expressions."""
+    """Return the direct sub-expressions."""
     match expression:
         case Literal_() | Name():
             return ()
@@ -274,7 +276,7 @@ def parts(expression: Expression) -> tuple[Expression, ...]:
 
 
 def with_parts(expression: Expression, change: Callable[[Expression], Expression]) -> Expression:
-    """``expression`` with each direct sub-expression changed; bounds of intervals stay."""
+    """Return ``expression`` with each direct sub-expression changed; bounds of intervals stay."""
     match expression:
         case Literal_() | Name():
             return expression
@@ -291,7 +293,7 @@ def with_parts(expression: Expression, change: Callable[[Expression], Expression
 
 
 def depth(expression: Expression) -> int:
-    """How deep the tree is; iterative, since its purpose is to refuse trees that are too deep."""
+    """Return the depth of the tree; iterative, so that a tree that is too deep can be refused."""
     deepest = 0
     waiting = [(expression, 1)]
     while waiting:
@@ -302,7 +304,7 @@ def depth(expression: Expression) -> int:
 
 
 def walk(expression: Expression) -> Iterator[Expression]:
-    """Every sub-expression, parents first."""
+    """Yield every sub-expression, parents first."""
     waiting = [expression]
     while waiting:
         current = waiting.pop()

@@ -1,8 +1,8 @@
 """Terms: real-valued expressions over vehicle signals, sizes and parameters, in SI units.
 
-A term is a tree of plain nodes. ``Inverse`` is 1/x with 1/0 = ∞ (paper, appendix *Robust
-Semantics*) and stands only alone on one side of a comparison; every other node is finite.
-A ``Quotient`` divides by a term without signals, so each term is a piecewise polynomial of signals.
+A term is a tree of plain nodes. ``Inverse`` is 1/x with 1/0 = ∞ (paper, appendix *Robust Semantics*). It may
+only be a whole side of a comparison; every other node is finite. The denominator of a ``Quotient`` has no
+signals, so each term is a piecewise polynomial of signals.
 """
 
 from collections.abc import Callable
@@ -10,7 +10,7 @@ from fractions import Fraction
 from math import prod
 from typing import TypeAlias, assert_never
 
-from roadproof.logic.node import node, once
+from roadproof.logic.node import memoised, node
 from roadproof.world.signals import SIGNAL_DIMENSIONS as SIGNAL_DIMENSIONS
 from roadproof.world.signals import SIZE_DIMENSIONS as SIZE_DIMENSIONS
 from roadproof.world.signals import SignalName as SignalName
@@ -36,7 +36,7 @@ class Parameter:
 
 @node
 class Variable:
-    """A real number that a claim quantifies over (``given v: m/s: …``), the same at all times."""
+    """A real number that a claim quantifies over (``given v: m/s: …``), constant in time."""
 
     name: str
     dimension: Dimension = (0, 0)
@@ -52,18 +52,18 @@ class Signal:
 
 @node
 class Size:
-    """A quantity of a vehicle that never varies, and is greater than zero."""
+    """A constant quantity of a vehicle, greater than zero."""
 
     name: SizeName
     vehicle: str
 
 
 @node
-class Own:
-    """A quantity that a specification declares with ``signal``: of ``vehicle``, or of none ('').
+class CustomSignal:
+    """A custom signal, declared with ``signal`` in a specification: of ``vehicle``, or of none ('').
 
-    It is any function of time whose values lie within ``low`` and ``high`` (SI; None is without bound).
-    Where ``truth``, it is 0 or 1, and only ``logic.formula.own_truth`` compares it.
+    It is any function of time with values within ``low`` and ``high`` (SI; None is unbounded). If ``truth``,
+    it is 0 or 1, and only ``logic.custom_names.signal_is_true`` compares it.
     """
 
     name: str
@@ -74,8 +74,8 @@ class Own:
     truth: bool = False
 
     @property
-    def told(self) -> str:
-        """As it is written: ``jerk(SV)``, ``red``."""
+    def text(self) -> str:
+        """The signal as it is written: ``jerk(SV)``, ``red``."""
         return f"{self.name}({self.vehicle})" if self.vehicle else self.name
 
 
@@ -126,7 +126,7 @@ Term: TypeAlias = (
     | Variable
     | Signal
     | Size
-    | Own
+    | CustomSignal
     | Sum
     | Product
     | Power
@@ -135,32 +135,32 @@ Term: TypeAlias = (
     | Minimum
     | Inverse
 )
-Leaf: TypeAlias = Number | Parameter | Variable | Signal | Size | Own
-Varying: TypeAlias = Signal | Own
+Leaf: TypeAlias = Number | Parameter | Variable | Signal | Size | CustomSignal
+Varying: TypeAlias = Signal | CustomSignal
 """The leaves that change with time."""
 
 
 def number(value: Fraction | int, dimension: Dimension = (0, 0)) -> Number:
-    """A rational constant."""
+    """Return a rational constant."""
     return Number(Fraction(value), dimension)
 
 
 def negate(term: Term) -> Term:
-    """``-term``, written as a product with -1."""
+    """Return ``-term``, as a product with -1."""
     if isinstance(term, Number):
         return Number(-term.value, term.dimension)
     return Product((number(-1), term))
 
 
 def subtract(left: Term, right: Term) -> Term:
-    """``left - right``."""
+    """Return ``left - right``."""
     return Sum((left, negate(right)))
 
 
 def children(term: Term) -> tuple[Term, ...]:
-    """The direct sub-terms of ``term``."""
+    """Return the direct sub-terms of ``term``."""
     match term:
-        case Number() | Parameter() | Variable() | Signal() | Size() | Own():
+        case Number() | Parameter() | Variable() | Signal() | Size() | CustomSignal():
             return ()
         case Sum(terms) | Maximum(terms) | Minimum(terms):
             return terms
@@ -177,9 +177,9 @@ def children(term: Term) -> tuple[Term, ...]:
 
 
 def with_children(term: Term, new: tuple[Term, ...]) -> Term:
-    """``term`` with its direct sub-terms replaced, in the order of ``children``."""
+    """Return ``term`` with its direct sub-terms replaced, in the order of ``children``."""
     match term:
-        case Number() | Parameter() | Variable() | Signal() | Size() | Own():
+        case Number() | Parameter() | Variable() | Signal() | Size() | CustomSignal():
             return term
         case Sum() | Product() | Maximum() | Minimum():
             return type(term)(new)
@@ -194,31 +194,31 @@ def with_children(term: Term, new: tuple[Term, ...]) -> Term:
 
 
 def leaves(term: Term) -> tuple[Leaf, ...]:
-    """Every leaf of ``term``, from left to right."""
+    """Return every leaf of ``term``, from left to right."""
     return (term,) if isinstance(term, Leaf) else _leaves_inside(term)
 
 
-@once
+@memoised
 def _leaves_inside(term: Term) -> tuple[Leaf, ...]:
     return tuple(leaf for child in children(term) for leaf in leaves(child))
 
 
 def replace_leaves(term: Term, replace: Callable[[Leaf], Term]) -> Term:
-    """``term`` with each leaf replaced by ``replace(leaf)``."""
+    """Return ``term`` with each leaf replaced by ``replace(leaf)``."""
     if isinstance(term, Leaf):
         return replace(term)
     return with_children(term, tuple(replace_leaves(child, replace) for child in children(term)))
 
 
-def put(term: Term, old: Term, new: Term) -> Term:
-    """``term`` with ``new`` wherever it has ``old``."""
+def replace_term(term: Term, old: Term, new: Term) -> Term:
+    """Return ``term`` with every occurrence of ``old`` replaced by ``new``."""
     if term == old:
         return new
-    return with_children(term, tuple(put(child, old, new) for child in children(term)))
+    return with_children(term, tuple(replace_term(child, old, new) for child in children(term)))
 
 
 def constant_value(term: Term) -> Fraction | None:
-    """The value of a term made of numbers only, else None.
+    """Return the value of a term of numbers only, else None.
 
     >>> constant_value(Quotient(number(3), number(5)))
     Fraction(3, 5)
@@ -228,7 +228,7 @@ def constant_value(term: Term) -> Fraction | None:
     return None if isinstance(term, Leaf | Inverse) else _constant_inside(term)
 
 
-@once
+@memoised
 def _constant_inside(term: Sum | Product | Power | Quotient | Maximum | Minimum) -> Fraction | None:
     values: list[Fraction] = []
     for child in children(term):

@@ -1,34 +1,31 @@
-"""What analyses of scenarios rest on: definitions, values of parameters, and how hard is searched."""
+"""The basis of analyses: definitions, values of parameters, and how hard is searched."""
 
-from collections.abc import Mapping
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
 from dataclasses import field
 from fractions import Fraction
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, TypedDict
 
 from roadproof.evidence.claim import Claim, Exists, claim_of
-from roadproof.evidence.settled import Settled
-from roadproof.evidence.specifications import specification_names
-from roadproof.evidence.strict import JsonObject
 from roadproof.library.bind import values_with
-from roadproof.library.specification import Library, Query, Specification
 from roadproof.runtime.budget import Effort, Work
 from roadproof.runtime.records import dataclass
-from roadproof.verdict import ProofVerdict
-from roadproof.world.road import Road
-from roadproof.world.vehicle import Vehicle
 
 if TYPE_CHECKING:
-    from roadproof.engines.search.outcome import Search
+    from roadproof.engines.setting import Search
     from roadproof.evidence.claim import Objective
+    from roadproof.library.specification import Library, Query, Specification
+    from roadproof.world.road import Road
+    from roadproof.world.vehicle import Vehicle
 
-Asked = TypeVar("Asked")
 
+class CommonFields(TypedDict):
+    """The fields that the data of all views have, as keywords."""
 
-@dataclass(frozen=True)
-class ProofResult(Settled[ProofVerdict], Generic[Asked]):
-    """The verdict on a claim: a certificate where it is proved, else a reason."""
-
-    claim: Asked
+    options: Mapping[str, str]
+    parameters: Mapping[str, str]
+    specs: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -47,7 +44,7 @@ class Basis:
     horizon: Fraction = Fraction(6)
     effort: Effort = field(default_factory=Effort)
     proof: float = 3.0
-    objective: "Objective" = "smooth"
+    objective: Objective = "smooth"
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
 
     @property
@@ -68,11 +65,17 @@ class Basis:
         """The value of every parameter. Raises ``InputError``."""
         return values_with(self.library, self.values)
 
-    def said(self) -> JsonObject:
-        """Return what a view says of all its answers: readings, values of parameters, specification files."""
+    def common_data(self, without: Collection[str] = ()) -> CommonFields:
+        """Return the data that all views have: options, values of parameters, specification files.
+
+        ``without``: parameters that are left out.
+        """
+        from roadproof.evidence.specifications import specification_names  # here: for data alone
+
         values = sorted((name, str(value)) for name, value in self.all_values().items())
-        files = specification_names(self.library)
-        return {"options": dict(self.specification.options), "parameters": dict(values), "specs": [*files]}
+        files = tuple(specification_names(self.library))
+        parameters = {name: value for name, value in values if name not in without}
+        return {"options": dict(self.specification.options), "parameters": parameters, "specs": files}
 
     def claim(self, query: Query) -> Claim:
         """The claim that there is a drive on which ``query`` holds, within the limits of this basis."""
@@ -82,10 +85,9 @@ class Basis:
 
     def search(
         self, query: Query, road: Road | None = None, effort: Effort | None = None, explain: bool = False
-    ) -> "Search":
+    ) -> Search:
         """A search for a drive on which ``query`` holds."""
-        from roadproof.engines.search.outcome import Search  # here: proofs need not wait for numpy
-        from roadproof.engines.search.question import SearchOptions, Setting
+        from roadproof.engines.setting import Search, SearchOptions, Setting
 
         vehicles = {name: x for name, x in self.vehicles.items() if not name or name in query.vehicles}
         setting = Setting(road=road, vehicles=vehicles, values=self.values, horizon=self.horizon)

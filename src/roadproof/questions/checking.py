@@ -9,17 +9,35 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.errors import InputError, StaleError
-from roadproof.evidence.answer import Answer, Judged, assumed_by, read_answer, undecided
-from roadproof.evidence.claim import HELP, Claim, Confirming, Exists, Judge, Judgement, On, OwnMode
+from roadproof.evidence.answer import ClaimAnswer, JudgedTrace, assumed_by, undecided
+from roadproof.evidence.answer_codec import read_answer
+from roadproof.evidence.claim import (
+    HELP,
+    Claim,
+    ConfirmingJudge,
+    Exists,
+    On,
+    OwnMode,
+    TraceJudge,
+    TraceJudgement,
+)
 from roadproof.evidence.codec import write
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.heading import library_of
 from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, read_json
 from roadproof.evidence.subject import OTHER
-from roadproof.library.motion import statement
-from roadproof.questions.data import QUESTION, SCHEMA, read_question
-from roadproof.questions.question import Doubted, Doubting, Linkable, Question, Telling, walk
-from roadproof.reasons import NO_REASON, Why
+from roadproof.library.assumption import claim_statement
+from roadproof.questions.data import SCHEMA, read_question
+from roadproof.questions.question import (
+    QUESTION,
+    Annotating,
+    FindsUnknowns,
+    HasUnknowns,
+    Linkable,
+    Question,
+    walk_batch,
+)
+from roadproof.reasons import NO_REASON, ReasonKind
 from roadproof.runtime.records import dataclass
 
 _ANY_VERSION = SCHEMA.rpartition("/")[0] + "/"
@@ -39,7 +57,7 @@ class QuestionFolder:
     folder: Path
     question: Question[Any]
     specs: tuple[Path, ...]
-    answers: Mapping[str, Answer]
+    answers: Mapping[str, ClaimAnswer]
     problems: tuple[Finding, ...]
     others: tuple[str, ...]
     missing: frozenset[str] = frozenset()
@@ -77,34 +95,42 @@ class QuestionFolder:
                 label, text = self.question.label(name), answer.claim.query.text
                 where = str(self.folder / f"{name}.json")
                 without = () if answer.verdict == "UNKNOWN" else ("there is no evidence for it",)
-                said = Finding(where, NO_EVIDENCE, Acceptance.ACCEPTED, label=label, claim=text)
-                yield replace(said, verdict=str(answer.verdict), unchecked=without)
-        doubts = [*self.question.doubted] if isinstance(self.question, Doubted) else []
-        doubts += self.question.doubts(self.answers) if isinstance(self.question, Doubting) else []
-        for about, reason in doubts:
-            said = Finding(str(self.folder / QUESTION), NO_EVIDENCE, Acceptance.ACCEPTED, reason, label=about)
-            yield replace(said, verdict="UNKNOWN")
+                finding = Finding(where, NO_EVIDENCE, Acceptance.ACCEPTED, label=label, claim=text)
+                yield replace(finding, verdict=str(answer.verdict), unchecked=without)
+        unknowns = [*self.question.undecided_parts] if isinstance(self.question, HasUnknowns) else []
+        unknowns += self.question.unknowns(self.answers) if isinstance(self.question, FindsUnknowns) else []
+        for about, reason in unknowns:
+            finding = Finding(
+                str(self.folder / QUESTION), NO_EVIDENCE, Acceptance.ACCEPTED, reason, label=about
+            )
+            yield replace(finding, verdict="UNKNOWN")
 
-    def finding(self, name: str, found: Finding) -> Finding:
+    def finding(self, name: str, finding: Finding) -> Finding:
         """Return what was found of a file, in the words of the question; a trace is judged again."""
         answer = self.answers[name]
-        if isinstance(answer.claim.mode, On) and isinstance(answer.evidence, Judged):
+        if isinstance(answer.claim.mode, On) and isinstance(answer.evidence, JudgedTrace):
             same = _is_so(answer.claim.mode.judge, answer.evidence.shows)
             outcome = Acceptance.ACCEPTED if same else Acceptance.REJECTED
-            reason = NO_REASON if same else Why.NOT_SHOWN()
-            found = replace(found, kind="test", outcome=outcome, reason=reason)
-        told = replace(
-            _told(self.question, name, answer.claim, found),
+            reason = NO_REASON if same else ReasonKind.NOT_SHOWN()
+            finding = replace(finding, kind="test", outcome=outcome, reason=reason)
+        annotated = replace(
+            _about_claim(self.question, name, answer.claim, finding),
             verdict=str(answer.verdict),
-            unchecked=(*found.unchecked, *(OTHER_LIBRARY,) * self.is_other_library),
+            unchecked=(*finding.unchecked, *(OTHER_LIBRARY,) * self.is_other_library),
         )
         if isinstance(answer.claim.mode, OwnMode) and answer.claim.mode.is_open:
-            told = replace(told, claim=found.claim)  # which says the numbers that the claim leaves open
-        return self.question.tell(name, answer, told) if isinstance(self.question, Telling) else told
+            annotated = replace(
+                annotated, claim=finding.claim
+            )  # which says the numbers that the claim leaves open
+        return (
+            self.question.annotate(name, answer, annotated)
+            if isinstance(self.question, Annotating)
+            else annotated
+        )
 
 
-def _is_so(judge: Judge, shows: Judgement) -> bool:
-    if isinstance(judge, Confirming):
+def _is_so(judge: TraceJudge, shows: TraceJudgement) -> bool:
+    if isinstance(judge, ConfirmingJudge):
         return judge.confirms(shows)
     return write(judge()) == write(shows)
 
@@ -135,12 +161,13 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     """Return the answers of a folder. Raises ``InputError`` where ``question.json`` cannot be read."""
     question = read_question(folder, given)
     there = {x.stem: x for x in folder.iterdir() if x.suffix == ".json" and x.name != QUESTION}
-    answers: dict[str, Answer] = {}
+    answers: dict[str, ClaimAnswer] = {}
     problems: list[Finding] = []
     missing: set[str] = set()
     refused: set[str] = set()
 
-    def find(name: str, claim: Claim) -> Answer:
+    def find(name: str, claim: Claim) -> ClaimAnswer:
+        """Return the answer in the file of a claim, judged again."""
         if name not in answers:
             path = there.pop(name, None)
             is_link = path is not None and path.is_symlink()
@@ -151,10 +178,10 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
                 outcome = Acceptance.REJECTED
                 answers[name] = _read(claim, content, str(path))
             except InputError as error:
-                fault = Why.TOLD(error)
+                fault = ReasonKind.TOLD(error)
                 where = str(folder / f"{name}.json")
-                told = Why.TOLD(str(error).removeprefix(where).lstrip(": "))
-                problems.append(_problem(question, name, claim, Finding(where, "", outcome, told), error))
+                message = ReasonKind.TOLD(str(error).removeprefix(where).lstrip(": "))
+                problems.append(_problem(question, name, claim, Finding(where, "", outcome, message), error))
                 refused.add(name)
                 answers[name] = undecided(claim, fault)
         return answers[name]
@@ -163,18 +190,22 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     while new := [x for x in question.batches(answers) if x.name not in seen]:
         for batch in new:
             seen.add(batch.name)
-            [*walk(batch, find)]
-    problems += [Finding(str(path), "", Acceptance.REJECTED, Why.NOT_ITS_ANSWER()) for path in there.values()]
+            [*walk_batch(batch, find)]
+    problems += [
+        Finding(str(path), "", Acceptance.REJECTED, ReasonKind.NOT_ITS_ANSWER()) for path in there.values()
+    ]
     specs = tuple(folder / Path(x.name).name for x in question.basis.library.files)
     specs = tuple(x for x in specs if x.is_file())
     beside = {x for x in folder.iterdir() if x.suffix != ".json" and not x.is_dir()} - {*specs}
     within = {x.parent for x in folder.rglob(QUESTION)} - {folder}  # folders of their own
     strays = [x for x in folder.rglob("*.json") if x.parent != folder and within.isdisjoint(x.parents)]
-    problems += [Finding(str(path), "", Acceptance.REJECTED, Why.NOT_ITS_ANSWER()) for path in sorted(strays)]
+    problems += [
+        Finding(str(path), "", Acceptance.REJECTED, ReasonKind.NOT_ITS_ANSWER()) for path in sorted(strays)
+    ]
     links = sorted(x for x in folder.iterdir() if x.is_symlink() and x.is_dir())
-    problems += [Finding(str(path), "", Acceptance.REJECTED, Why.LINK()) for path in links]
+    problems += [Finding(str(path), "", Acceptance.REJECTED, ReasonKind.LINK()) for path in links]
     others = tuple(sorted(x.name for x in beside))
-    said = library_of(Fields(read_json(folder / QUESTION, LARGEST_INDEX), str(folder / QUESTION)))
+    fingerprint = library_of(Fields(read_json(folder / QUESTION, LARGEST_INDEX), str(folder / QUESTION)))
     return QuestionFolder(
         folder,
         question,
@@ -184,28 +215,30 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
         others,
         frozenset(missing),
         frozenset(refused),
-        said != question.basis.library.fingerprint,
+        fingerprint != question.basis.library.fingerprint,
     )
 
 
-def _problem(question: Question[Any], name: str, claim: Claim, found: Finding, error: InputError) -> Finding:
+def _problem(
+    question: Question[Any], name: str, claim: Claim, finding: Finding, error: InputError
+) -> Finding:
     """Return what is wrong with a file, which is about the claim that it is named after.
 
     Where a test has changed since it was judged, the answer is stale.
     """
-    about = _told(question, name, claim, found)
+    about = _about_claim(question, name, claim, finding)
     if not isinstance(error, StaleError) or not isinstance(question, Linkable):
         return about
-    return replace(about, kind="test", reason=Why.FILE_CHANGED(about.label))
+    return replace(about, kind="test", reason=ReasonKind.FILE_CHANGED(about.label))
 
 
-def _told(question: Question[Any], name: str, claim: Claim, found: Finding) -> Finding:
+def _about_claim(question: Question[Any], name: str, claim: Claim, finding: Finding) -> Finding:
     """Return a finding with what the question says of a claim: its label, its text and its subject."""
     linked = question.subject(name) if isinstance(question, Linkable) else OTHER
     return replace(
-        found,
+        finding,
         label=question.label(name),
-        claim=statement(assumed_by(claim), claim.query.text),
+        claim=claim_statement(assumed_by(claim), claim.query.text),
         subject=linked.kind,
         name=linked.name,
         set=linked.set or question.basis.specification.set_name,
@@ -221,9 +254,9 @@ def _content(path: Path) -> object:
     return content
 
 
-def _read(claim: Claim, content: object, where: str) -> Answer:
+def _read(claim: Claim, content: object, where: str) -> ClaimAnswer:
     if content is None:
-        return undecided(claim, Why.NO_ANSWER())
+        return undecided(claim, ReasonKind.NO_ANSWER())
     if isinstance(claim.mode, On) and isinstance(content, dict) and "asked" in content:
         content = {**content, "asked": claim.mode.asked}  # its trace is judged again, whatever it was asked
     return read_answer(claim, content, where)

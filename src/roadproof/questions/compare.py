@@ -1,24 +1,24 @@
-"""How two formulas relate: whether a drive tells them apart, in each direction."""
+"""The relation of two formulas: whether a drive tells them apart, in each direction."""
 
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 
-from roadproof.evidence.answer import Answer
-from roadproof.evidence.answers import shared
-from roadproof.evidence.certificate import Certificate, certificate_data
+from roadproof.evidence.answer import ClaimAnswer
+from roadproof.evidence.answers import headings, shared
+from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.claim import Claim, Exists, claim_of
 from roadproof.evidence.codec import Doc, read
-from roadproof.evidence.json_schema import Whole
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.schema_notes import EvidenceSchema
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query
 from roadproof.questions.basis import Basis
-from roadproof.questions.place import Place, mode_of, place_of
+from roadproof.questions.drive_search_data import DriveSearchData, search_data, search_mode
 from roadproof.questions.question import Answers, Steps, heading_of
-from roadproof.questions.question import Place as Placing
+from roadproof.questions.question import EvidencePlace as Placing
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
@@ -44,18 +44,18 @@ class Sides:
 
     first: Side
     second: Side
-    within: Place
+    within: DriveSearchData
 
 
 @dataclass(frozen=True)
 class Direction:
-    """Whether one formula implies the other: whether a drive has the one and not the other.
+    """The answer whether one formula implies the other: a proof, or a drive with the one and not the other.
 
     ``claim`` says it; ``answer`` None: it is not settled.
     """
 
     claim: Query
-    answer: Answer | None
+    answer: ClaimAnswer | None
 
     @property
     def verdict(self) -> ClaimVerdict:
@@ -67,12 +67,16 @@ class Direction:
                 return Verdict.REFUTED
             case Verdict.NONE_WITHIN:
                 return Verdict.PROVED_BOUNDED
-            case _:
+            case Verdict.PROVED | Verdict.PROVED_BOUNDED | Verdict.REFUTED | Verdict.VACUOUS:
+                return Verdict.UNKNOWN
+            case Verdict.DERIVED | Verdict.COVERED | Verdict.GAPS | Verdict.CROSSCHECK_FAILED:
+                return Verdict.UNKNOWN
+            case None | Verdict.UNKNOWN:
                 return Verdict.UNKNOWN
 
     @property
     def reason(self) -> Reason:
-        """Why there is no better answer, or with which values there is a proof."""
+        """Return why there is no better answer, or with which values there is a proof."""
         return NO_REASON if self.answer is None else self.answer.reason
 
     @property
@@ -88,7 +92,7 @@ class Direction:
 
 @dataclass(frozen=True)
 class Comparison:
-    """How the first formula relates to the second: stronger is to imply it and not the reverse.
+    """The relation of the first formula to the second; stronger is to imply it and not the reverse.
 
     ``sets``: the spec sets that the two are of.
     """
@@ -101,7 +105,7 @@ class Comparison:
 
     @property
     def directions(self) -> Mapping[str, Direction]:
-        """Both directions, each with a name."""
+        """The two directions by name."""
         return dict(zip(DIRECTIONS, (self.forward, self.backward), strict=True))
 
     @property
@@ -116,7 +120,7 @@ class Comparison:
                 return "weaker"
             case Verdict.REFUTED, Verdict.REFUTED:
                 return "incomparable"
-            case _:
+            case _:  # open: pairs with a verdict that decides nothing
                 return "unknown"
 
 
@@ -138,23 +142,27 @@ class CompareQuestion:
         return Work(effort, min(PROOF, effort.units), alone=True)
 
     @property
-    def asked(self) -> Sides:
-        """What is asked as data."""
+    def settings(self) -> Sides:
+        """The question as data."""
         return Sides(
             first=Side(formula=self.first.text, set=self.basis.specification.set_name),
             second=Side(formula=self.second.text, set=self.other),
-            within=place_of(self.within),
+            within=search_data(self.within),
         )
 
     @classmethod
-    def of(cls, basis: Basis, asked: object, where: str) -> "CompareQuestion":
+    def of(cls, basis: Basis, settings: object, where: str) -> "CompareQuestion":
         """Return the question that plain data ask. Raises ``InputError``."""
-        data = read(Sides, asked, where)
+        data = read(Sides, settings, where)
         home = basis.specification.in_set(data.first.set)
         first = read_claim(home, data.first.formula)
         second = read_claim(home, data.second.formula)
         return cls(
-            replace(basis, specification=home), first, second, data.second.set, mode_of(data.within, where)
+            replace(basis, specification=home),
+            first,
+            second,
+            data.second.set,
+            search_mode(data.within, where),
         )
 
     @cached_property
@@ -176,7 +184,7 @@ class CompareQuestion:
         """Return what the drive of a claim shows."""
         return "first without second" if name == file_name(DIRECTIONS[0]) else "second without first"
 
-    def direction(self, name: str, answer: Answer | None) -> Direction:
+    def direction(self, name: str, answer: ClaimAnswer | None) -> Direction:
         """Return a direction with its answer."""
         forward = name == file_name(DIRECTIONS[0])
         pair = (self.first, self.second) if forward else (self.second, self.first)
@@ -193,8 +201,8 @@ class CompareQuestion:
         return ComparisonData(
             **heading_of(SCHEMA, self.basis),
             **ComparisonData.of_road(self.within.road),
-            first=self.asked.first,
-            second=self.asked.second,
+            first=self.settings.first,
+            second=self.settings.second,
             relation=view.relation,
             forward=_direction_data(view.forward),
             backward=_direction_data(view.backward),
@@ -224,6 +232,8 @@ def file_name(direction: str) -> str:
 
 
 def _direction_data(x: Direction) -> "DirectionData":
+    from roadproof.evidence.certificate_file import certificate_data  # here: few have a certificate
+
     proof = x.certificate
     return DirectionData(
         claim=x.claim.text,
@@ -236,24 +246,24 @@ def _direction_data(x: Direction) -> "DirectionData":
 
 @dataclass(frozen=True, kw_only=True)
 class DirectionData:
-    """Whether one formula implies the other."""
+    """The answer whether one formula implies the other."""
 
     claim: shared.Formula
     verdict: ClaimVerdict
     reason: shared.Reason
     certificate: Annotated[
-        Annotated[object, Whole("certificate.json")] | None,
+        Annotated[object, EvidenceSchema("certificate.json")] | None,
         Doc("Of a PROVED: the opposite never holds."),
     ]
     drive: Annotated[
-        Annotated[object, Whole("drive.json")] | None,
+        Annotated[object, EvidenceSchema("drive.json")] | None,
         Doc("Of a REFUTED: one formula holds on it, the other does not."),
     ]
 
 
 @dataclass(frozen=True, kw_only=True)
-class ComparisonData(shared.OnRoad, shared.PlainHeading):
-    """Which of two formulas implies the other."""
+class ComparisonData(headings.OnRoad, headings.BaseHeading):
+    """The answer which of two formulas implies the other."""
 
     schema: Literal["roadproof/compare/2"] = SCHEMA
     first: Side

@@ -6,33 +6,24 @@ from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
 from roadproof.errors import InputError
-from roadproof.evidence.answers import shared
+from roadproof.evidence.answers import headings, shared
 from roadproof.evidence.codec import Doc, read, write
 from roadproof.evidence.heading import heading, library_of
-from roadproof.evidence.specifications import read_beside
+from roadproof.evidence.specifications import load_specs_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
 from roadproof.extension import entries, imported
 from roadproof.library.specification import Library
 from roadproof.questions.basis import Basis
-from roadproof.questions.place import VehicleModel, model_of, vehicles_of
-from roadproof.questions.question import Question
+from roadproof.questions.drive_search_data import VehicleModel, vehicle_data, vehicles_of
+from roadproof.questions.question import QUESTION, Question
 from roadproof.runtime.records import dataclass
 
-QUESTION: Final = "question.json"
 SCHEMA: Final = "roadproof/question/1"
-CORE: Mapping[str, str] = {
-    "compare": "roadproof.questions.compare:CompareQuestion",
-    "order": "roadproof.questions.order.question:OrderQuestion",
-    "overlap": "roadproof.questions.overlap:OverlapQuestion",
-    "prove": "roadproof.questions.prove:ProveQuestion",
-    "witness": "roadproof.questions.witness:WitnessQuestion",
-}
-"""The class of each kind of question; extensions add others."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class BasisSays:
-    """What all claims of a question are read with, and what drives may be."""
+    """The definitions and limits that all claims of a question share."""
 
     sets: shared.SetNames
     options: shared.Options
@@ -44,7 +35,7 @@ class BasisSays:
 
 
 @dataclass(frozen=True, kw_only=True)
-class QuestionFile(shared.Heading):
+class QuestionFile(headings.AnswerHeading):
     """A question: its kind, what its claims are read with, and what is asked."""
 
     schema: Literal["roadproof/question/1"] = SCHEMA
@@ -59,7 +50,7 @@ def question_data(question: Question[Any]) -> JsonObject:
         **heading(SCHEMA, question.basis.library),
         question=question.kind,
         basis=basis_data(question.basis),
-        asked=write(question.asked),
+        asked=write(question.settings),
     )
     return write(file)
 
@@ -73,7 +64,7 @@ def basis_data(basis: Basis) -> BasisSays:
         specs=tuple(Path(x.name).name for x in basis.library.files),
         horizon=basis.horizon,
         objective=basis.objective,
-        vehicles={name: model_of(x) for name, x in basis.vehicles.items()},
+        vehicles={name: vehicle_data(x) for name, x in basis.vehicles.items()},
     )
 
 
@@ -86,37 +77,37 @@ def read_question(folder: Path, given: Sequence[Path] = ()) -> Question[Any]:
     path = folder / QUESTION
     content = read_json(path, LARGEST_INDEX)
     file = read(QuestionFile, content, str(path))
-    kinds = entries("questions", CORE)
+    kinds = entries("questions")
     if file.question not in kinds:
         raise InputError(f"{path}: question='{file.question[:40]}' is none of {', '.join(sorted(kinds))}")
-    said = file.basis
+    stored = file.basis
     library = _library_of(content, path, folder, given)
-    specification = library.select(said.sets[0], said.options)
-    values = {name: Fraction(x) for name, x in said.parameters.items()}
+    specification = library.select(stored.sets[0], stored.options)
+    values = {name: Fraction(x) for name, x in stored.parameters.items()}
     basis = Basis(
         specification,
-        said.sets,
+        stored.sets,
         values,
-        said.horizon,
-        objective=said.objective,  # type: ignore[arg-type]
-        vehicles=vehicles_of(said.vehicles),
+        stored.horizon,
+        objective=stored.objective,  # type: ignore[arg-type]
+        vehicles=vehicles_of(stored.vehicles),
     )
-    made: Callable[[Basis, object, str], Question[Any]] = imported(kinds[file.question]).of
+    made: Callable[[Basis, object, str], Question[Any]] = imported("questions", file.question).of
     return made(basis, file.asked, f"{path}, asked")
 
 
 def _library_of(content: object, path: Path, folder: Path, given: Sequence[Path]) -> Library:
     """Return the definitions that a question was asked with, on ``given`` files where it needs any."""
-    said = Fields(_mapping(content)["basis"], str(path))
+    fields = Fields(_mapping(content)["basis"], str(path))
     try:
-        library, _ = read_beside(said, folder, ())
+        library, _ = load_specs_beside(fields, folder, ())
     except InputError:
         if not given:
             raise
     else:
         if not given or library.fingerprint == library_of(Fields(content, str(path))):
             return library
-    return read_beside(said, folder, given)[0]
+    return load_specs_beside(fields, folder, given)[0]
 
 
 def _mapping(content: object) -> JsonObject:

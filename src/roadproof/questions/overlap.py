@@ -1,76 +1,84 @@
-"""Which scenarios can hold together: for every pair a drive, a proof that there is none, or a doubt.
+"""The question which scenarios can hold together: for each pair a drive, a proof of none, or UNKNOWN.
 
 Pairs that differ only in their road sectors (eq. disturbFormat: rows 9 to 24 repeat rows 1 to 8) are settled
 one after the other: a drive of one is put on roads of the others, and parts that clash are looked for there.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property
 from itertools import combinations, permutations
-from typing import Annotated, Any, ClassVar, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, ClassVar, TypeAlias
 
 from roadproof.errors import InputError
-from roadproof.evidence.answer import Answer
+from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.answers import shared
-from roadproof.evidence.claim import Claim
-from roadproof.evidence.codec import Doc, Rule, read
-from roadproof.evidence.json_schema import Shared
-from roadproof.evidence.judged import JudgedDrive
-from roadproof.library import scenarios as s
-from roadproof.library.alike import likes_of
+from roadproof.evidence.codec import Doc, read
+from roadproof.library import scenarios as scenario_library
 from roadproof.library.compose import both, either, eventually, negation
 from roadproof.library.elaborate import read_claim
+from roadproof.library.sector_twins import sector_twins
 from roadproof.library.specification import Query, Specification
-from roadproof.logic.formula import Not
+from roadproof.logic.formula import Formula, Not
 from roadproof.logic.parts import parts_of, texts_of
+from roadproof.logic.rewrite import without_names
 from roadproof.questions.basis import Basis
-from roadproof.questions.question import Answers, Place, Steps, heading_of
-from roadproof.reasons import NO_REASON, Reason, Why, joined
+from roadproof.questions.question import heading_of
+from roadproof.reasons import NO_REASON, Reason, ReasonKind, joined
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import DriveVerdict, Verdict
 
-SCHEMA: Final = "roadproof/overlap/2"
+if TYPE_CHECKING:
+    from roadproof.evidence.claim import Claim
+    from roadproof.evidence.judged import JudgedDrive
+    from roadproof.questions.overlap_data import OverlapData
+    from roadproof.questions.question import Answers, EvidencePlace, Steps
+
 OTHER_LANE = "L2"
-Choice: TypeAlias = Annotated[
-    Literal["same", "any"], Doc("Whether both have the same, or each its own."), Shared("choice")
-]
-Pair: TypeAlias = tuple[s.Scenario, s.Scenario]
+Pair: TypeAlias = tuple[scenario_library.Scenario, scenario_library.Scenario]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Meeting:
-    """How two scenarios may meet, and which ones."""
+    """The settings of an overlap: the scenarios, and how two of them may hold together."""
 
     among: Annotated[tuple[shared.Number, ...] | None, Doc("The scenarios; null for all.")] = None
-    lanes: Choice = "same"
-    roles: Choice = "same"
-    start: Choice = "same"
+    lanes: shared.Choice = "same"
+    roles: shared.Choice = "same"
+    start: shared.Choice = "same"
 
 
 def conjunctions(
-    specification: Specification, one: s.Scenario, other: s.Scenario, meeting: Meeting
+    specification: Specification,
+    one: scenario_library.Scenario,
+    other: scenario_library.Scenario,
+    meeting: Meeting,
 ) -> tuple[Query, ...]:
     """Return the formulas of which one has to hold for two scenarios to hold together.
 
     The vehicles are those of the scenario that has more of them; a scenario of two vehicles meets one of
     three with SV and either of its POVs.
     """
-    mine, theirs = s.vehicles_of(specification, one), s.vehicles_of(specification, other)
+    mine, theirs = (
+        scenario_library.vehicles_of(specification, one),
+        scenario_library.vehicles_of(specification, other),
+    )
     swapped = len(theirs) > len(mine)
     most, fewer = (theirs, mine) if swapped else (mine, theirs)
-    lane = OTHER_LANE if meeting.lanes == "any" else s.LANE
-    found: list[Query] = []
+    lane = OTHER_LANE if meeting.lanes == "any" else scenario_library.LANE
+    queries: list[Query] = []
     for roles in _assignments(most, len(fewer), meeting.roles):
         mine_now, theirs_now = (roles, most) if swapped else (most, roles)
-        first = s.applied(specification, one, mine_now)
-        second = s.applied(specification, other, theirs_now, lane)
+        first = scenario_library.apply_scenario(specification, one, mine_now)
+        second = scenario_library.apply_scenario(specification, other, theirs_now, lane)
         if meeting.start == "same":
-            found.append(both(first, second))
+            queries.append(both(first, second))
         else:
-            found += [both(first, eventually(second)), both(second, eventually(first))]
-    return tuple(found)
+            queries += [both(first, eventually(second)), both(second, eventually(first))]
+    return tuple(queries)
 
 
 def _assignments(vehicles: Sequence[str], count: int, roles: str) -> list[tuple[str, ...]]:
@@ -84,8 +92,8 @@ def pairs_of(basis: Basis, numbers: Sequence[int] | None = None) -> tuple[Pair, 
     """Return the pairs of different scenarios of one set, or all across two; ``numbers``: only these."""
     scenarios = [
         [
-            s.Scenario(number, name)
-            for number in s.numbers_of(basis.specification.in_set(name))
+            scenario_library.Scenario(number, name)
+            for number in scenario_library.numbers_of(basis.specification.in_set(name))
             if numbers is None or number in numbers
         ]
         for name in basis.set_names
@@ -97,20 +105,25 @@ def pairs_of(basis: Basis, numbers: Sequence[int] | None = None) -> tuple[Pair, 
 
 @dataclass(frozen=True)
 class Core:
-    """Parts of a conjunction that clash."""
+    """Parts of a conjunction that clash; ``bodies``: these parts with all definitions written out."""
 
     whole: Query
     parts: tuple[str, ...]
+    bodies: frozenset[Formula]
 
 
 @dataclass(frozen=True)
 class PairVerdict:
-    """What is known of a pair; ``answers`` by the names of their claims, None for what is not settled."""
+    """The verdict on a pair; ``answers`` by the names of their claims, None where undecided.
 
-    a: s.Scenario
-    b: s.Scenario
+    ``first``: the first pair that differs from this one in road sectors only, if it is another one.
+    """
+
+    a: scenario_library.Scenario
+    b: scenario_library.Scenario
     claims: Mapping[str, Claim]
-    answers: Mapping[str, Answer | None]
+    answers: Mapping[str, ClaimAnswer | None]
+    first: PairVerdict | None = None
 
     @property
     def verdict(self) -> DriveVerdict:
@@ -126,17 +139,17 @@ class PairVerdict:
 
     @property
     def query(self) -> Query:
-        """What the drive satisfies, or what is proved, or what is in doubt."""
+        """The formula that the drive satisfies, that is proved, or that is undecided."""
         match self.verdict:
             case Verdict.WITNESSED:
                 return self._shown.claim.query
             case Verdict.IMPOSSIBLE:
                 return both(*(negation(claim.query) for claim in self.claims.values()))
-            case _:
+            case Verdict.NONE_WITHIN | Verdict.UNKNOWN:
                 return either(*(self.claims[name].query for name in self._left))
 
     @property
-    def _shown(self) -> Answer:
+    def _shown(self) -> ClaimAnswer:
         return next(x for x in self.answers.values() if x is not None and x.verdict is Verdict.WITNESSED)
 
     @property
@@ -151,15 +164,15 @@ class PairVerdict:
         return self._shown.drive if self.verdict is Verdict.WITNESSED else None
 
     @property
-    def evidence(self) -> Mapping[str, Answer]:
+    def evidence(self) -> Mapping[str, ClaimAnswer]:
         """The answers that show the verdict, by name."""
         named = {name: x for name, x in self.answers.items() if x is not None and x.is_final}
-        wanted = {name: x for name, x in named.items() if x.verdict is self.verdict}
-        return dict([*wanted.items()][:1]) if self.verdict is Verdict.WITNESSED else wanted
+        showing = {name: x for name, x in named.items() if x.verdict is self.verdict}
+        return dict([*showing.items()][:1]) if self.verdict is Verdict.WITNESSED else showing
 
     @property
     def reason(self) -> Reason:
-        """Why a pair is in doubt."""
+        """Return why a pair is in doubt."""
         if self.verdict in (Verdict.WITNESSED, Verdict.IMPOSSIBLE):
             return NO_REASON
         reasons = (self._reason(name) for name in self._left)
@@ -167,27 +180,33 @@ class PairVerdict:
 
     def _reason(self, name: str) -> Reason:
         answer = self.answers[name]
-        return NO_REASON if answer is None else answer.reason or Why.IMPOSSIBLE(answer.claim.query.text)
+        return (
+            NO_REASON if answer is None else answer.reason or ReasonKind.IMPOSSIBLE(answer.claim.query.text)
+        )
 
     @cached_property
     def cores(self) -> tuple[Core, ...]:
-        """The parts that clash, of each conjunction, as the certificates say them."""
+        """The clashing parts of each conjunction, in the words of the first pair if they mean the same."""
         if self.verdict is not Verdict.IMPOSSIBLE:
             return ()
-        return tuple(Core(x.claim.query, _core(x)) for x in self.evidence.values())
+        words = {} if self.first is None else {core.bodies: core.parts for core in self.first.cores}
+        cores = map(_core, self.evidence.values())
+        return tuple(replace(core, parts=words.get(core.bodies, core.parts)) for core in cores)
 
     @property
-    def told(self) -> tuple[str, ...]:
+    def core_texts(self) -> tuple[str, ...]:
         """The parts of all cores, each once."""
         return tuple(dict.fromkeys(part for core in self.cores for part in core.parts))
 
 
-def _core(answer: Answer) -> tuple[str, ...]:
+def _core(answer: ClaimAnswer) -> Core:
+    """Return the parts that the certificate of an answer shows to clash."""
     proof = answer.certificate
     assert proof is not None
     denied = read_claim(answer.claim.home, proof.claim).formula
     assert isinstance(denied, Not)
-    return texts_of([*dict.fromkeys(parts_of(denied.body))])
+    parts = [*dict.fromkeys(parts_of(denied.body))]
+    return Core(answer.claim.query, texts_of(parts), frozenset(map(without_names, parts)))
 
 
 @dataclass(frozen=True)
@@ -204,7 +223,7 @@ class OverlapQuestion:
 
     kind: ClassVar[str] = "overlap"
     basis: Basis
-    asked: Meeting = field(default_factory=Meeting)
+    settings: Meeting = field(default_factory=Meeting)
 
     @property
     def work(self) -> Work:
@@ -212,18 +231,18 @@ class OverlapQuestion:
         return Work(self.basis.effort, self.basis.proof, explain=True)
 
     @classmethod
-    def of(cls, basis: Basis, asked: object, where: str) -> "OverlapQuestion":
+    def of(cls, basis: Basis, settings: object, where: str) -> OverlapQuestion:
         """Return the question that plain data ask. Raises ``InputError``."""
         if len(basis.set_names) > 2:
             raise InputError(f"{where}: pairs are of one spec set, or of two")
-        return cls(basis, read(Meeting, asked, where))
+        return cls(basis, read(Meeting, settings, where))
 
     @cached_property
     def pairs(self) -> tuple[Pair, ...]:
         """The pairs that are asked about."""
-        return pairs_of(self.basis, self.asked.among)
+        return pairs_of(self.basis, self.settings.among)
 
-    def batches(self, known: Answers) -> list["PairBatch"]:
+    def batches(self, known: Answers) -> list[PairBatch]:
         """A batch for pairs that differ in road sectors only."""
         groups: dict[Pair, list[Pair]] = {}
         for pair in self.pairs:
@@ -239,32 +258,34 @@ class OverlapQuestion:
         return {pair: self._claims_of(pair) for pair in self.pairs}
 
     def _claims_of(self, pair: Pair) -> dict[str, Claim]:
-        queries = conjunctions(self.basis.specification, *pair, self.asked)
+        queries = conjunctions(self.basis.specification, *pair, self.settings)
         stem = name_of(*pair)
         names = [stem] if len(queries) == 1 else [f"{stem}-{k}" for k in range(1, len(queries) + 1)]
         return {name: self.basis.claim(query) for name, query in zip(names, queries, strict=True)}
 
-    def _seed(self, a: s.Scenario, b: s.Scenario) -> Pair:
+    def _seed(self, a: scenario_library.Scenario, b: scenario_library.Scenario) -> Pair:
         """Return the first pair that differs from this one in road sectors only."""
-        seed = tuple(s.Scenario(self._likes[x.set_name][x.number], x.set_name) for x in (a, b))
+        seed = tuple(scenario_library.Scenario(self._twins[x.set_name][x.number], x.set_name) for x in (a, b))
         first, second = seed if a.set_name != b.set_name else sorted(seed, key=lambda x: x.number)
         return first, second
 
     @cached_property
-    def _likes(self) -> dict[str, dict[int, int]]:
-        return {name: likes_of(self.basis.specification.in_set(name)) for name in self.basis.set_names}
+    def _twins(self) -> dict[str, dict[int, int]]:
+        return {name: sector_twins(self.basis.specification.in_set(name)) for name in self.basis.set_names}
 
-    def data(self, view: OverlapView, place: Place, seconds: float) -> "OverlapData":
+    def data(self, view: OverlapView, place: EvidencePlace, seconds: float) -> OverlapData:
         """Return the view as ``--json`` prints it."""
-        said: dict[str, Any] = {"set": ",".join(self.basis.set_names), **self.basis.said()}
+        from roadproof.questions.overlap_data import SCHEMA, OverlapData, pair_data  # here: for --json alone
+
         return OverlapData(
             **heading_of(SCHEMA, self.basis),
-            **said,
-            lanes=self.asked.lanes,
-            roles=self.asked.roles,
-            start=self.asked.start,
+            set=",".join(self.basis.set_names),
+            **self.basis.common_data(),
+            lanes=self.settings.lanes,
+            roles=self.settings.roles,
+            start=self.settings.start,
             seconds=seconds,
-            verdicts=tuple(_pair_data(x, place) for x in view.pairs),
+            verdicts=tuple(pair_data(x, place) for x in view.pairs),
         )
 
     def label(self, name: str) -> str:
@@ -274,11 +295,14 @@ class OverlapQuestion:
 
     def view(self, known: Answers) -> OverlapView:
         """Return the verdict on each pair."""
-        pairs = (
-            PairVerdict(*pair, claims, {name: known.get(name) for name in claims})
-            for pair, claims in self.claims.items()
-        )
-        return OverlapView(self.asked, tuple(pairs))
+        first: dict[Pair, PairVerdict] = {}
+        pairs: list[PairVerdict] = []
+        for pair, claims in self.claims.items():
+            seed = self._seed(*pair)
+            answers = {name: known.get(name) for name in claims}
+            pairs.append(PairVerdict(*pair, claims, answers, first.get(seed)))
+            first.setdefault(seed, pairs[-1])
+        return OverlapView(self.settings, tuple(pairs))
 
 
 @dataclass(frozen=True)
@@ -297,70 +321,6 @@ class PairBatch:
                     break
 
 
-def name_of(a: s.Scenario, b: s.Scenario) -> str:
+def name_of(a: scenario_library.Scenario, b: scenario_library.Scenario) -> str:
     """Return under which name the answer for a pair is kept."""
     return f"{a.set_name}-{a.number:02}-{b.set_name}-{b.number:02}"
-
-
-def _pair_data(pair: PairVerdict, place: Place) -> "PairData":
-    return PairData(
-        a=pair.a.number,
-        b=pair.b.number,
-        set_a=pair.a.set_name,
-        set_b=pair.b.set_name,
-        verdict=pair.verdict,
-        formula=pair.query.text,
-        core=pair.told,
-        cores=tuple(Clash(formula=x.whole.text, parts=x.parts) for x in pair.cores),
-        evidence=tuple(place(name, x) for name, x in pair.evidence.items()),
-        reason=pair.reason,
-    )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Clash:
-    """Parts of a conjunction that contradict each other."""
-
-    formula: shared.Formula
-    parts: tuple[str, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class PairData:
-    """Whether two scenarios can hold together."""
-
-    a: shared.Number
-    b: shared.Number
-    set_a: shared.SetName
-    set_b: shared.SetName
-    verdict: DriveVerdict
-    formula: Annotated[
-        str,
-        Doc(
-            "Of a WITNESSED what holds on the drive; of an IMPOSSIBLE what is proved; else what is in doubt."
-        ),
-    ]
-    core: Annotated[tuple[str, ...], Doc("Parts that clash, of all cores.")]
-    cores: Annotated[tuple[Clash, ...], Doc("For each way in which the two can meet, parts that clash.")]
-    evidence: Annotated[
-        tuple[shared.KeptEvidence, ...],
-        Doc("A drive; or for each way in which the two can meet, a certificate that its core clashes."),
-    ]
-    reason: shared.Reason = NO_REASON
-
-
-@dataclass(frozen=True, kw_only=True)
-class OverlapData(shared.Heading):
-    """Which pairs of scenarios can hold together."""
-
-    schema: Literal["roadproof/overlap/2"] = SCHEMA
-    set: Annotated[str, Rule(least=1), Doc("The spec set, or two with a comma between.")]
-    lanes: Annotated[Choice, Doc("Whether both speak of one lane, or each of its own.")]
-    roles: Annotated[Choice, Doc("Whether vehicles play the same parts in both.")]
-    start: Annotated[Choice, Doc("Whether both start at 0, or one then or later.")]
-    options: shared.Options
-    parameters: shared.Parameters
-    specs: shared.Specifications
-    view: shared.Dense = "dense"
-    seconds: shared.Seconds = 0.0
-    verdicts: tuple[PairData, ...]

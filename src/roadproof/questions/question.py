@@ -1,30 +1,36 @@
-"""What a question is: plain data that list claims, and show the answers to them."""
+"""The protocol of questions: plain data that list claims, and show the answers to them."""
+
+from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from typing import Any, ClassVar, Protocol, Self, TypeAlias, TypeVar, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol, Self, TypeAlias, TypeVar, runtime_checkable
 
-from roadproof.engines.modifier import modifier_of
-from roadproof.evidence.answer import Answer, undecided
+from roadproof.engines.modifier import find_modifier
+from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.claim import Claim
-from roadproof.evidence.finding import Finding
-from roadproof.evidence.heading import heading
-from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.subject import Subject
-from roadproof.questions.basis import Basis
-from roadproof.reasons import NO_REASON, Reason
-from roadproof.runtime.budget import Work
+from roadproof.reasons import Reason
+from roadproof.runtime.canonical import digest
 
+if TYPE_CHECKING:
+    from roadproof.evidence.finding import Finding
+    from roadproof.evidence.judged import JudgedDrive
+    from roadproof.evidence.subject import Subject
+    from roadproof.questions.basis import Basis
+    from roadproof.runtime.budget import Work
+
+QUESTION: Final = "question.json"
+"""The file of a folder of answers that says what was asked."""
 View = TypeVar("View", covariant=True)
 T = TypeVar("T")
-Place: TypeAlias = Callable[[str, Answer], object]
+EvidencePlace: TypeAlias = Callable[[str, ClaimAnswer], object]
 """Where an answer is: the path of its file, or the evidence itself."""
-Answers: TypeAlias = Mapping[str, Answer]
+Answers: TypeAlias = Mapping[str, ClaimAnswer]
 """Answers by the names of their claims."""
-Steps: TypeAlias = Generator[tuple[str, Claim], Answer, None]
+Steps: TypeAlias = Generator[tuple[str, Claim], ClaimAnswer, None]
 """Claims with their names; after each its answer is sent, on which the next may depend."""
 
 
-class Batch(Protocol):
+class QuestionBatch(Protocol):
     """Claims that one process settles, since answers to some help with others. It can be sent elsewhere."""
 
     @property
@@ -43,21 +49,21 @@ class Question(Protocol[View]):
 
     @property
     def basis(self) -> Basis:
-        """What the claims are read with, and what drives may be."""
+        """The definitions and limits of the claims."""
 
     @property
     def work(self) -> Work:
         """The work that is allowed for a claim."""
 
     @property
-    def asked(self) -> object:
-        """What is asked beside the basis: a definition for ``evidence.codec``."""
+    def settings(self) -> object:
+        """The further settings of the question: a definition for ``evidence.codec``."""
 
     @classmethod
-    def of(cls, basis: Basis, asked: object, where: str) -> Self:
+    def of(cls, basis: Basis, settings: object, where: str) -> Self:
         """Return the question that plain data ask. Raises ``InputError``."""
 
-    def batches(self, known: Answers) -> Sequence[Batch]:
+    def batches(self, known: Answers) -> Sequence[QuestionBatch]:
         """Return the batches that can be settled, given what is known of others.
 
         Those that were settled before are among them. It is asked again until there is no new one.
@@ -69,7 +75,7 @@ class Question(Protocol[View]):
     def view(self, known: Answers) -> View:
         """Return what the answers show together. Claims without an answer are in doubt."""
 
-    def data(self, view: Any, place: Place, seconds: float) -> object:
+    def data(self, view: Any, place: EvidencePlace, seconds: float) -> object:
         """Return a view as a definition for ``evidence.codec``, which ``--json`` prints."""
 
 
@@ -126,19 +132,19 @@ class Replacing(Protocol):
 
 
 @runtime_checkable
-class Doubted(Protocol):
+class HasUnknowns(Protocol):
     """A question of which more might be asked, had nothing been cut off."""
 
     @property
-    def doubted(self) -> Sequence[tuple[str, Reason]]:
-        """What is in doubt beside the claims, and why."""
+    def undecided_parts(self) -> Sequence[tuple[str, Reason]]:
+        """Other undecided parts of the question, with reasons."""
 
 
 @runtime_checkable
-class Doubting(Protocol):
+class FindsUnknowns(Protocol):
     """A question whose answers leave more in doubt than their claims say."""
 
-    def doubts(self, known: Answers) -> Sequence[tuple[str, Reason]]:
+    def unknowns(self, known: Answers) -> Sequence[tuple[str, Reason]]:
         """Return what is in doubt, and why."""
 
 
@@ -151,15 +157,20 @@ class Linkable(Protocol):
 
 
 @runtime_checkable
-class Telling(Protocol):
+class Annotating(Protocol):
     """A question that says more of a checked answer than its label."""
 
-    def tell(self, name: str, answer: Answer, found: Finding) -> Finding:
+    def annotate(self, name: str, answer: ClaimAnswer, finding: Finding) -> Finding:
         """Return what was found, with what the answer shows."""
 
 
-def walk(batch: Batch, find: Callable[[str, Claim], Answer | None]) -> Iterator[tuple[str, Claim]]:
-    """Yield the claim of a batch that ``find`` has no answer to; what follows depends on it."""
+def walk_batch(
+    batch: QuestionBatch, find: Callable[[str, Claim], ClaimAnswer | None]
+) -> Iterator[tuple[str, Claim]]:
+    """Yield the first claim of a batch, with its name, to which ``find`` has no answer; else nothing.
+
+    While it is iterated, it calls ``find`` for each claim in turn and sends the answer to the batch.
+    """
     steps = batch.steps()
     try:
         name, claim = next(steps)
@@ -171,18 +182,46 @@ def walk(batch: Batch, find: Callable[[str, Claim], Answer | None]) -> Iterator[
     yield name, claim
 
 
-def seen(asking: Generator[tuple[str, Claim], Answer, T], known: Answers) -> T:
-    """Return what answers show; claims without one are in doubt."""
-    try:
-        name, claim = next(asking)
-        while True:
-            name, claim = asking.send(known.get(name) or undecided(claim, NO_REASON))
-    except StopIteration as end:
-        found: T = end.value
-        return found
+class EarlierAnswers:
+    """The answers to the claims of a batch before the next one, which its engines know as they decide it.
+
+    What they show may decide the next claim. An undecided answer is therefore stored with their digest.
+    """
+
+    def __init__(self, batch: QuestionBatch) -> None:
+        self.batch = batch
+        self.answers: dict[str, ClaimAnswer] = {}
+
+    def add(self, name: str, answer: ClaimAnswer) -> None:
+        """Add the answer to the next claim."""
+        self.answers[name] = answer
+
+    def digest(self) -> str:
+        """Return the digest of the claims with their verdicts, and of the drives of the batch itself."""
+        seeds = self.batch.seeds if isinstance(self.batch, Seeded) else ()
+        verdicts = [(x.claim.digest(), x.verdict) for x in self.answers.values()]
+        return digest([x.file.drive for x in seeds], verdicts)
+
+
+def walk_with_earlier(
+    batch: QuestionBatch, find: Callable[[str, Claim, EarlierAnswers], ClaimAnswer | None]
+) -> Iterator[tuple[str, Claim]]:
+    """Walk a batch as ``walk_batch``; ``find`` is given the answers to the claims before each, too."""
+    earlier = EarlierAnswers(batch)
+
+    def find_next(name: str, claim: Claim) -> ClaimAnswer | None:
+        """Return the answer to the next claim, and note it."""
+        answer = find(name, claim, earlier)
+        if answer is not None:
+            earlier.add(name, answer)
+        return answer
+
+    yield from walk_batch(batch, find_next)
 
 
 def heading_of(schema: str, basis: Basis) -> dict[str, Any]:
     """Return how a view begins as plain data: its kind, the version, the library, what begins so."""
-    modifier = modifier_of(basis.specification.options)
+    from roadproof.evidence.heading import heading  # here: for data alone
+
+    modifier = find_modifier(basis.specification.options)
     return heading(schema, basis.library) | ({} if modifier is None else modifier.as_data(schema))

@@ -1,36 +1,39 @@
-"""Where answers are: in a folder, in this user's cache, and in the archive that is shipped.
+"""The store of answers: a folder, the user's cache, and the shipped archive.
 
 The folder has one file for each answer, named as its claim is named, and ``question.json``. In the cache and
-the archive a file stands under the digest of its claim, of the work that was allowed, and of the version.
+the archive a file stands under the digest of its claim, of the work that was allowed, and of the version, and
+of the packages of others that decide the claim. An undecided answer stands there only if counted work ended
+it, and its key covers the claims before it, too: their drives and proofs might have decided it.
 """
+
+from __future__ import annotations
 
 import json
 from contextlib import suppress
 from dataclasses import replace
-from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, assert_never
 
-from roadproof.errors import InputError, UsageError
-from roadproof.evidence.answer import Answer, Refutation, answer_data, is_answer, read_answer
-from roadproof.evidence.answer_files import Undecided
+from roadproof.errors import InputError
+from roadproof.evidence.answer import ClaimAnswer, RefutingTrace
+from roadproof.evidence.answer_codec import answer_data, is_answer, read_answer
+from roadproof.evidence.answer_files import UndecidedFile
 from roadproof.evidence.claim import Claim
-from roadproof.evidence.heading import library_of
-from roadproof.evidence.specifications import keep_specifications
-from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, read_json
+from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
 from roadproof.library.specification import Specification
-from roadproof.questions.data import QUESTION, basis_data, question_data, read_question
-from roadproof.questions.question import Answers, Growing, Question, Replacing
-from roadproof.reasons import Why
+from roadproof.questions.foreign_code import foreign_code
+from roadproof.questions.question import QUESTION, Answers, EarlierAnswers, Question
 from roadproof.runtime.archives import CACHE, JUDGED, Origin, recall, remember
 from roadproof.runtime.budget import Work
-from roadproof.runtime.cache import make_room
+from roadproof.runtime.cache import evict_old
 from roadproof.runtime.canonical import digest
-from roadproof.runtime.files import make_folder, write_json
-from roadproof.runtime.package_data import program
-from roadproof.runtime.pool import Say
+from roadproof.runtime.files import write_json
+from roadproof.runtime.package_data import program_digest
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import ANSWERS
+
+if TYPE_CHECKING:
+    from roadproof.runtime.pool import Say
 
 
 @dataclass(frozen=True)
@@ -51,107 +54,88 @@ class Store:
 
         Raises ``UsageError`` where it holds another question's answers.
         """
-        if self.folder is None:
-            return
-        make_folder(self.folder)
-        keep_specifications(self.folder, question.basis.library)
-        head = self.folder / QUESTION
-        former: Any = read_json(head, LARGEST_INDEX) if head.exists() else None
-        if former is not None and isinstance(question, Growing):
-            question = self._grown(question, say)
-        data = json.loads(json.dumps(question_data(question)))
-        if former is None or isinstance(question, Growing):
-            write_json(head, data)
-        elif former != data:
-            if not isinstance(question, Replacing) or former.get("question") != question.kind:
-                raise self._other()
-            self.leave_only({})
-            write_json(head, data)
+        if self.folder is not None:
+            from roadproof.questions.folder import open_folder  # here: most answers are written nowhere
 
-    def _grown(self, question: Any, say: Say | None) -> Any:
-        """Return the question with former ones of the folder; displaced ones and their views are removed."""
-        assert self.folder is not None
-        former = self._former(question)
-        for name in question.displaced(former):
-            if say is not None and (self.folder / f"{name}.json").exists():
-                say(f"the answer '{name}' is that to another search, which this one displaces")
-            for path in self.folder.glob(f"{name}.*"):
-                path.unlink()
-        return question.beside(former)
+            open_folder(self.folder, question, lambda: self.leave_only({}), say)
 
-    def _former(self, question: Question[Any]) -> Question[Any]:
-        """Return the question of the folder. Raises ``UsageError`` where it is of another kind or library."""
-        assert self.folder is not None
-        try:
-            former = read_question(self.folder)
-        except InputError:
-            raise self._other() from None
-        head = self.folder / QUESTION
-        library = library_of(Fields(read_json(head, LARGEST_INDEX), str(head)))
-        is_same = former.kind == question.kind and library == question.basis.library.fingerprint
-        if not is_same or basis_data(former.basis) != basis_data(question.basis):
-            raise self._other()
-        return former
+    def _same_work(self, claim: Claim) -> str:
+        return digest(self.work, ANSWERS, program_digest(), *foreign_code(self.kind, claim))
 
-    def _other(self) -> UsageError:
-        return UsageError(
-            f"{self.folder} holds the answers to another question, or to this one under another library: "
-            "name another folder with --out, or remove it"
-        )
-
-    @cached_property
-    def _same_work(self) -> str:
-        return digest(self.work, ANSWERS, program())
-
-    def stands(self, answer: Answer) -> bool:
+    def stands(self, answer: ClaimAnswer) -> bool:
         """Return whether an answer need not be asked again: for ever, or with as much work."""
         evidence = answer.evidence
-        return answer.is_final or (isinstance(evidence, Undecided) and evidence.work == self._same_work)
+        return answer.is_final or (
+            isinstance(evidence, UndecidedFile) and evidence.work == self._same_work(answer.claim)
+        )
 
-    def exhausted(self, answer: Answer) -> Answer:
-        """Return an answer to which as much work adds nothing, with a mark that says so.
-
-        Only searches in stages count all of their work; what the clock cut off has none.
-        """
+    def exhausted(self, answer: ClaimAnswer) -> ClaimAnswer:
+        """Return an answer to which as much work adds nothing, with a mark that says so."""
         evidence = answer.evidence
-        if not self.work.staged or not isinstance(evidence, Undecided) or evidence.reason.kind is Why.CLOCK:
+        if not isinstance(evidence, UndecidedFile):
             return answer
-        return replace(answer, evidence=replace(evidence, work=self._same_work))
+        from roadproof.evidence.ending import Ending, ending_of  # here: stored answers had such an ending
+
+        match ending_of(evidence):
+            case Ending.WORK:
+                return self._marked(answer, evidence)
+            case Ending.MACHINE | Ending.UNSTATED:
+                return answer
+            case ending:
+                assert_never(ending)
+
+    def _marked(self, answer: ClaimAnswer, evidence: UndecidedFile) -> ClaimAnswer:
+        return replace(answer, evidence=replace(evidence, work=self._same_work(answer.claim)))
 
     def key(self, claim: Claim) -> str:
-        """The digest of all that an answer depends on."""
-        return digest(claim.digest(), self.work, ANSWERS)
+        """The digest of all that evidence depends on, such as the version of a foreign extension."""
+        return digest(claim.digest(), self.work, ANSWERS, *foreign_code(self.kind, claim))
 
-    def look_up(self, name: str, claim: Claim, say: Say | None = None) -> tuple[Answer, Origin | None] | None:
-        """Return the answer to a claim that is known; None where none stands.
+    def undecided_key(self, claim: Claim, earlier: EarlierAnswers) -> str:
+        """The digest of all that an undecided answer depends on."""
+        return digest(self.key(claim), earlier.digest())
 
-        It comes with its origin, which is None where the folder has it. ``say`` is told of a file in the
-        folder that does not stand.
+    def look_up(
+        self, name: str, claim: Claim, earlier: EarlierAnswers, say: Say | None = None
+    ) -> tuple[ClaimAnswer, Origin | None] | None:
+        """Return the answer to a claim that is known and stands; None where there is none.
+
+        It comes with its origin, which is None where the folder has it. ``earlier``: the answers to the
+        claims of the batch before this one. ``say`` is told of an invalid file in the folder.
         """
         if self.folder is not None and (path := self.folder / f"{name}.json").is_file():
             try:
                 answer = read_answer(claim, read_json(path, LARGEST_EVIDENCE), str(path))
                 self._require_enough(answer, path)
-                return answer, None
+                if self.stands(answer):
+                    return answer, None
             except InputError as error:
                 if say is not None:
                     say(f"a stored answer is invalid and is computed again: {error}")
-        known = recall(self.kind, self.key(claim)) if self.reads_known else None
+        if not self.reads_known:
+            return None
+        return self._known(claim, self.key(claim)) or self._known(claim, self.undecided_key(claim, earlier))
+
+    def _known(self, claim: Claim, key: str) -> tuple[ClaimAnswer, Origin] | None:
+        """Return the answer of cache or archive under a key."""
+        known = recall(self.kind, key)
         if known is not None:
             with suppress(InputError):
-                content = _said_in(claim.home, json.loads(known.text))
+                content = _restated(claim.home, json.loads(known.text))
                 answer = read_answer(claim, content, "a known answer", known.is_judged)
                 known.note_judged()
+                if isinstance(answer.evidence, UndecidedFile):
+                    answer = self._marked(answer, answer.evidence)
                 return answer, known.origin
         return None
 
-    def _require_enough(self, answer: Answer, path: Path) -> None:
+    def _require_enough(self, answer: ClaimAnswer, path: Path) -> None:
         """Raises ``InputError`` for a trace, where a drive is to be looked for that refutes it, too."""
         shown = answer.evidence
-        if isinstance(shown, Refutation) and self.work.seek_drive and not shown.drive_sought:
+        if isinstance(shown, RefutingTrace) and self.work.seek_drive and not shown.drive_sought:
             raise InputError(f"{path} is a trace, and no drive was looked for")
 
-    def whole(self, answer: Answer) -> Answer:
+    def whole(self, answer: ClaimAnswer) -> ClaimAnswer:
         """Return an answer as files have it: a certificate with its tableau, if one is found."""
         proof = answer.certificate
         if self.folder is None or proof is None or proof.tableau is not None:
@@ -161,16 +145,28 @@ class Store:
         tableau = find_tableau(proof, answer.claim.home.library)
         return replace(answer, evidence=replace(proof, tableau=tableau))
 
-    def keep(self, name: str, answer: Answer, is_new: bool = True) -> None:
-        """Write an answer into the folder, and into the cache where it is new and stands."""
+    def keep(self, name: str, answer: ClaimAnswer, earlier: EarlierAnswers | None = None) -> None:
+        """Write an answer into the folder, and into the cache where it is new and stands.
+
+        ``earlier``: the answers to the claims before that of a new answer; None for an answer that is known.
+        """
+        is_new = earlier is not None
         if self.folder is None and not is_new:
             return
         data = answer_data(answer if is_new else self.whole(answer))
         if self.folder is not None:
             self.require_folder()
             write_json(self.folder / f"{name}.json", data)
-        if is_new and self.reads_known and self.stands(answer):
-            remember(self.key(answer.claim), json.dumps(data))
+        if earlier is not None and self.reads_known and self.stands(answer):
+            remember(*self.shipped_text(answer, earlier))
+
+    def shipped_text(self, answer: ClaimAnswer, earlier: EarlierAnswers) -> tuple[str, str]:
+        """Return the key and the text of an answer that stands, for the cache and the archive."""
+        evidence = answer.evidence
+        if not isinstance(evidence, UndecidedFile):
+            return self.key(answer.claim), json.dumps(answer_data(answer))
+        unmarked = replace(answer, evidence=replace(evidence, work=None))
+        return self.undecided_key(answer.claim, earlier), json.dumps(answer_data(unmarked))
 
     def leave_only(self, answers: Answers, say: Say | None = None) -> None:
         """Remove answers to claims that are asked no more, since others were answered; ``say`` is told."""
@@ -191,21 +187,21 @@ class Store:
                 "answer would name: run the command again"
             )
 
-    def make_room(self) -> None:
+    def evict_old(self) -> None:
         """Keep the cache within its bounds."""
         for folder in (CACHE, JUDGED):
-            make_room(folder)
+            evict_old(folder)
 
 
-def _said_in(home: Specification, content: Any) -> Any:
+def _restated(home: Specification, content: Any) -> Any:
     """Return a known file as it is written where a claim is read: one formula may be in several spec sets."""
     if not isinstance(content, dict) or "set" not in content:
         return content
-    said = {**content, "set": home.set_name}
-    if "options" in said:
-        return {**said, "options": dict(home.options)}
-    values = said.get("parameters", {})
-    return {**said, "parameters": values | {x: y for x, y in home.options.items() if x in values}}
+    restated = {**content, "set": home.set_name}
+    if "options" in restated:
+        return {**restated, "options": dict(home.options)}
+    values = restated.get("parameters", {})
+    return {**restated, "parameters": values | {x: y for x, y in home.options.items() if x in values}}
 
 
 def keep_all(folder: Path, question: Question[Any], answers: Answers) -> None:
@@ -213,4 +209,4 @@ def keep_all(folder: Path, question: Question[Any], answers: Answers) -> None:
     store = Store(folder, question.kind, question.work, reads_known=False)
     store.open(question)
     for name, answer in answers.items():
-        store.keep(name, answer, is_new=False)
+        store.keep(name, answer)

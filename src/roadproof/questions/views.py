@@ -1,14 +1,13 @@
 """The view of a question as plain data: what ``--json`` prints, and what a page and a report are made of."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from roadproof.evidence.answer import Answer, answer_data
+from roadproof.evidence.answer import ClaimAnswer
+from roadproof.evidence.answer_codec import answer_data
 from roadproof.evidence.codec import write
 from roadproof.evidence.strict import JsonObject
-from roadproof.questions.checking import read_folder
-from roadproof.questions.question import Answers, Place, Question
+from roadproof.questions.question import Answers, EvidencePlace, Question
 
 
 def view_data(
@@ -19,22 +18,16 @@ def view_data(
     return write(question.data(question.view(known), placing(folder), seconds))
 
 
-def placing(folder: Path | None) -> Place:
+def placing(folder: Path | None) -> EvidencePlace:
     """Return where evidence is: the path of its file, or itself where there is no folder."""
 
-    def place(name: str, answer: Answer) -> object:
+    def place(name: str, answer: ClaimAnswer) -> object:
         return inside(answer) if folder is None else str(folder / f"{name}.json")
 
     return place
 
 
-def folder_data(folder: Path, given: Sequence[Path] = ()) -> JsonObject:
-    """Return the view of a folder of answers as plain data. Raises ``InputError``."""
-    found = read_folder(folder, given)
-    return view_data(found.question, found.answers, Path())
-
-
-def inside(answer: Answer) -> JsonObject:
+def inside(answer: ClaimAnswer) -> JsonObject:
     """Return evidence as it is inside an answer: without the tableau, which only files have."""
     data = answer_data(answer)
     return {**data, "tableau": None} if "tableau" in data else data

@@ -1,60 +1,36 @@
 """Drives for scenarios and formulas, or proofs that there are none."""
 
-from collections.abc import Mapping, Sequence
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import field, replace
 from functools import cached_property
-from typing import Annotated, ClassVar, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, Final
 
-from roadproof.engines.search.looking import limits_of
-from roadproof.engines.search.question import usual_road
 from roadproof.errors import InputError
-from roadproof.evidence.answer import Answer
-from roadproof.evidence.answer_files import Undecided
-from roadproof.evidence.answers import shared
-from roadproof.evidence.certificate import Certificate, certificate_data
+from roadproof.evidence.answer import ClaimAnswer
+from roadproof.evidence.answer_files import UndecidedFile
+from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.claim import Claim, Exists, claim_of
-from roadproof.evidence.codec import LEFT_OUT, TIMED, Doc, Rule, read
-from roadproof.evidence.json_schema import Whole
+from roadproof.evidence.codec import read
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.alike import like_of
 from roadproof.library.elaborate import read_claim
-from roadproof.library.scenarios import Scenario, applied
+from roadproof.library.scenarios import Scenario, apply_scenario
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula, Not
-from roadproof.logic.parts import parts_of, texts_of
 from roadproof.questions.basis import Basis
-from roadproof.questions.place import Place, mode_of, place_of
 from roadproof.questions.question import Answers, Steps, heading_of
-from roadproof.questions.question import Place as Placing
-from roadproof.reasons import NO_REASON, Reason, Why
-from roadproof.runtime.budget import Work
-from roadproof.runtime.cost import NO_COST, Cost
+from roadproof.questions.question import EvidencePlace as Placing
+from roadproof.reasons import NO_REASON, Reason, ReasonKind
+from roadproof.runtime.budget import NO_COST, Cost, Work
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import DriveVerdict, Verdict
-from roadproof.world.road import Road
 
-SCHEMA: Final = "roadproof/witness/1"
+if TYPE_CHECKING:
+    from roadproof.questions.witness_data import DriveRequest, DriveRequests, WitnessData
+    from roadproof.world.road import Road
+
 NONE_WITHIN: Final = "none-within"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sought:
-    """A formula that is to hold on a drive."""
-
-    name: Annotated[str, Rule(pattern="^[A-Za-z0-9_-]{1,80}$"), Doc("How the names of its files begin.")]
-    scenario: shared.OneScenario = None
-    set: shared.SetName
-    formula: shared.Formula
-    within: Annotated[Place, Doc("How drives are looked for.")]
-    count: Annotated[int, Rule(minimum=1), Doc("How many drives are looked for that differ clearly.")] = 1
-    trees: Annotated[bool, Doc("Whether trees are looked for that show a NONE-WITHIN.")] = False
-
-
-@dataclass(frozen=True, kw_only=True)
-class SoughtDrives:
-    """Formulas, each of which is to hold on some drives."""
-
-    searches: Annotated[tuple[Sought, ...], Rule(least=1), Doc("The formulas, in the order of the answer.")]
 
 
 @dataclass(frozen=True)
@@ -75,13 +51,13 @@ class SearchTask:
 
 @dataclass(frozen=True)
 class SearchResult:
-    """What is known of drives for a formula; ``answers``: in the order in which drives were looked for.
+    """The result of a search for drives of a formula; ``answers`` in the order of the search.
 
     ``cost`` in this run.
     """
 
     task: SearchTask
-    answers: tuple[Answer, ...]
+    answers: tuple[ClaimAnswer, ...]
     cost: Cost = NO_COST
 
     @property
@@ -103,9 +79,13 @@ class SearchResult:
     def verdict(self) -> DriveVerdict:
         """WITNESSED where there is a drive, else what the first search came to."""
         match self.answers[0].verdict if self.answers else Verdict.UNKNOWN:
-            case Verdict.WITNESSED | Verdict.IMPOSSIBLE | Verdict.NONE_WITHIN as found:
-                return found
-            case _:
+            case Verdict.WITNESSED | Verdict.IMPOSSIBLE | Verdict.NONE_WITHIN as drive_verdict:
+                return drive_verdict
+            case Verdict.PROVED | Verdict.PROVED_BOUNDED | Verdict.REFUTED | Verdict.VACUOUS:
+                return Verdict.UNKNOWN
+            case Verdict.DERIVED | Verdict.COVERED | Verdict.GAPS | Verdict.CROSSCHECK_FAILED:
+                return Verdict.UNKNOWN
+            case Verdict.UNKNOWN:
                 return Verdict.UNKNOWN
 
     @property
@@ -115,12 +95,12 @@ class SearchResult:
 
     @property
     def reason(self) -> Reason:
-        """Why there are no drives, or fewer than were asked for."""
+        """Return why there are no drives, or fewer than were asked for."""
         if not self.answers:
             return NO_REASON
-        found, last = len(self.drives), self.answers[-1].reason
-        if 0 < found < self.task.count:
-            return Why.FEWER_DRIVES(found, self.task.count, last)
+        count, last = len(self.drives), self.answers[-1].reason
+        if 0 < count < self.task.count:
+            return ReasonKind.FEWER_DRIVES(count, self.task.count, last)
         return self.answers[0].reason
 
     @property
@@ -128,11 +108,15 @@ class SearchResult:
         """The name of the road on which was searched."""
         if self.drives:
             return self.drives[0].file.road.name
-        return (self.task.within.road or usual_road(self.query.formula)).name
+        if self.task.within.road is not None:
+            return self.task.within.road.name
+        from roadproof.engines.search.usual_road import usual_road  # here: it reads road files
+
+        return usual_road(self.query.formula).name
 
     @property
     def natural(self) -> bool:
-        """Whether the first drive was found among natural ones."""
+        """Return whether the first drive was found among natural ones."""
         return bool(self.drives) and bool(self.drives[0].natural)
 
     @property
@@ -145,26 +129,32 @@ class SearchResult:
         """The parts that the proof shows to clash."""
         if self.certificate is None:
             return ()
+        from roadproof.logic.parts import parts_of  # here: few have a proof
+
         denied = read_claim(self.answers[0].claim.home, self.certificate.claim).formula
         return tuple(dict.fromkeys(parts_of(denied.body))) if isinstance(denied, Not) else ()
 
     @property
-    def told(self) -> tuple[str, ...]:
+    def core_texts(self) -> tuple[str, ...]:
         """The parts that clash as texts."""
+        from roadproof.logic.parts import texts_of  # here: few have a proof
+
         return texts_of(self.core)
 
     @property
-    def told_without_options(self) -> str:
+    def reason_without_options(self) -> str:
         """The reason, without the options of the command line that widen limits."""
         if self.limits is None:
             return self.reason
-        return limits_of(self.answers[0].claim).text(())
+        from roadproof.engines.search.claim_search import limits_for_claim  # here: it encodes the motion
+
+        return limits_for_claim(self.answers[0].claim).text(())
 
     @property
     def limits(self) -> object:
-        """Within what a NONE-WITHIN says that there is none."""
-        found = self.answers[0].evidence if self.answers else None
-        return found.limits if isinstance(found, Undecided) else None
+        """The limits within which NONE-WITHIN excludes drives."""
+        evidence = self.answers[0].evidence if self.answers else None
+        return evidence.limits if isinstance(evidence, UndecidedFile) else None
 
 
 @dataclass(frozen=True)
@@ -188,28 +178,32 @@ class WitnessQuestion:
         return Work(self.basis.effort, proof=0.0, alone=True)
 
     @property
-    def asked(self) -> SoughtDrives:
-        """What is asked as data."""
-        return SoughtDrives(searches=tuple(map(_sought, self.named.values())))
+    def settings(self) -> DriveRequests:
+        """The question as data."""
+        from roadproof.questions.witness_data import DriveRequests, task_data  # here: for folders alone
+
+        return DriveRequests(searches=tuple(map(task_data, self.named.values())))
 
     @classmethod
-    def of(cls, basis: Basis, asked: object, where: str) -> "WitnessQuestion":
+    def of(cls, basis: Basis, settings: object, where: str) -> WitnessQuestion:
         """Return the question that plain data ask. Raises ``InputError``."""
-        data = read(SoughtDrives, asked, where)
+        from roadproof.questions.witness_data import DriveRequests  # here: for folders alone
+
+        data = read(DriveRequests, settings, where)
         tasks = tuple(_task(basis.specification.in_set(x.set), x, where) for x in data.searches)
         return cls(basis, tasks)
 
-    def beside(self, former: "WitnessQuestion") -> "WitnessQuestion":
+    def beside(self, former: WitnessQuestion) -> WitnessQuestion:
         """Return the question about former formulas, too: a folder of drives grows."""
         return replace(self, tasks=tuple({**former.named, **self.named}.values()))
 
-    def displaced(self, former: "WitnessQuestion") -> list[str]:
+    def displaced(self, former: WitnessQuestion) -> list[str]:
         """Return the names of answers to former searches in whose place there is another now."""
         others = [x for x in former.named if x in self.named and not self._is_asked_by(former, x)]
         return [y for x in others for y in (*former.claim_names(x), f"{NONE_WITHIN}-{x}")]
 
-    def _is_asked_by(self, other: "WitnessQuestion", name: str) -> bool:
-        """Whether another question has this search under this name, too."""
+    def _is_asked_by(self, other: WitnessQuestion, name: str) -> bool:
+        """Return whether another question has this search under this name, too."""
         is_same = self.named[name].count == other.named[name].count
         return is_same and self.claim(name) == other.claim(name)
 
@@ -233,7 +227,7 @@ class WitnessQuestion:
         plain = claim.removeprefix(f"{NONE_WITHIN}-")
         return plain if plain in self.named else plain.rpartition("-")[0]
 
-    def is_last(self, claim: str, answer: Answer) -> bool:
+    def is_last(self, claim: str, answer: ClaimAnswer) -> bool:
         """Return whether nothing more is asked of a search once a claim of it has this answer."""
         name = self.search_named(claim)
         if claim not in self.claim_names(name):
@@ -242,23 +236,27 @@ class WitnessQuestion:
             return False
         return answer.drive is None or claim == self.claim_names(name)[-1]
 
-    def wants_trees(self, name: str, first: Answer) -> bool:
+    def wants_trees(self, name: str, first: ClaimAnswer) -> bool:
         """Return whether trees are looked for where the first search came to this answer."""
         return self.named[name].trees and first.verdict is Verdict.NONE_WITHIN
 
-    def claim(self, name: str, before: Sequence[Answer] = ()) -> Claim:
+    def claim(self, name: str, before: Sequence[ClaimAnswer] = ()) -> Claim:
         """Return the claim that there is a drive, which is unlike those ``before``."""
         task = self.named[name]
         unlike = tuple(x.drive.file.drive for x in before if x.drive is not None)
         mode = replace(task.within, unlike=unlike)
         return claim_of(task.specification, task.query, mode, self.basis.values)
 
-    def batches(self, known: Answers) -> list["SearchBatch"]:
+    def batches(self, known: Answers) -> list[SearchBatch]:
         """A batch for scenarios of which one search may answer several."""
+        if len(self.named) == 1:
+            return [SearchBatch(self, tuple(self.named))]
+        from roadproof.library.sector_twins import sector_twin  # here: a single search has no twin
+
         groups: dict[object, list[str]] = {}
         for name, task in self.named.items():
             number = task.scenario
-            group = name if number is None else like_of(task.specification, number)
+            group = name if number is None else sector_twin(task.specification, number)
             groups.setdefault(group, []).append(name)
         return [SearchBatch(self, tuple(names)) for names in groups.values()]
 
@@ -276,8 +274,14 @@ class WitnessQuestion:
         """Return what is known of drives for a formula."""
         return SearchResult(self.named[name], tuple(known[x] for x in self.claim_names(name) if x in known))
 
-    def data(self, view: WitnessView, place: Placing, seconds: float) -> "WitnessData":
+    def data(self, view: WitnessView, place: Placing, seconds: float) -> WitnessData:
         """Return the view as ``--json`` prints it."""
+        from roadproof.questions.witness_data import (  # here: for --json alone
+            SCHEMA,
+            WitnessData,
+            result_data,
+        )
+
         return WitnessData(
             **heading_of(SCHEMA, self.basis),
             **WitnessData.of_road(self.road),
@@ -305,109 +309,31 @@ class SearchBatch:
     def steps(self) -> Steps:
         """Yield a claim for each drive, until there is none, and for trees of a NONE-WITHIN."""
         for name in self.names:
-            found: list[Answer] = []
+            answers: list[ClaimAnswer] = []
             for claim_name in self.question.claim_names(name):
-                found.append((yield claim_name, self.question.claim(name, found)))
-                if found[-1].drive is None:
+                answers.append((yield claim_name, self.question.claim(name, answers)))
+                if answers[-1].drive is None:
                     break
-            if self.question.wants_trees(name, found[0]):
+            if self.question.wants_trees(name, answers[0]):
                 within = self.question.named[name].within
                 claim = self.question.claim(name)
                 yield f"{NONE_WITHIN}-{name}", replace(claim, mode=replace(within, trees=True))
 
 
-def _task(home: Specification, sought: Sought, where: str) -> SearchTask:
+def _task(home: Specification, search: DriveRequest, where: str) -> SearchTask:
     """Return a search as data say it. Raises ``InputError``."""
-    query = read_claim(home, sought.formula)
-    if sought.scenario is not None:
-        scenario = applied(home, Scenario(sought.scenario, home.set_name))
+    query = read_claim(home, search.formula)
+    if search.scenario is not None:
+        scenario = apply_scenario(home, Scenario(search.scenario, home.set_name))
         if scenario.formula != query.formula:
-            raise InputError(f"{where}: {sought.formula[:80]} is not scenario {sought.scenario}")
-    within = mode_of(sought.within, where)
-    return SearchTask(sought.name, home, query, sought.scenario, within, sought.count, sought.trees)
+            raise InputError(f"{where}: {search.formula[:80]} is not scenario {search.scenario}")
+    from roadproof.questions.drive_search_data import search_mode
 
-
-def _sought(task: SearchTask) -> Sought:
-    return Sought(
-        name=task.name,
-        scenario=task.scenario,
-        set=task.specification.set_name,
-        formula=task.query.text,
-        within=place_of(task.within),
-        count=task.count,
-        trees=task.trees,
-    )
+    within = search_mode(search.within, where)
+    return SearchTask(search.name, home, query, search.scenario, within, search.count, search.trees)
 
 
 def name_of(number: int, scenario: int | None, set_name: str) -> str:
     """Return the name of the ``number``-th search."""
     what = f"formula-{number:02d}" if scenario is None else f"scenario-{scenario:02d}"
     return f"{what}-{set_name}"
-
-
-# --- as data -----------------------------------------------------------------------------------------
-
-Stages: TypeAlias = Annotated[
-    Mapping[str, shared.Seconds],
-    TIMED,
-    Doc("By stage of the search, and all together, in s. Files of evidence leave it out."),
-]
-Sizes: TypeAlias = Annotated[
-    Mapping[str, Annotated[int, Rule(minimum=0)]],
-    Doc("Of the last problem that was solved: columns, rows, nodes, inequalities."),
-]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ResultData:
-    """What came of a search for drives."""
-
-    scenario: shared.OneScenario
-    set: shared.SetName
-    formula: shared.Formula
-    road: Annotated[str, Doc("Name of the road on which was searched.")]
-    verdict: DriveVerdict
-    view: Annotated[Literal["dense", "grid"], Doc("grid: on samples up to a horizon, within the limits.")]
-    reason: shared.Reason
-    natural: Annotated[bool, Doc("Whether the first drive was found among natural ones.")]
-    drives: tuple[Annotated[object, Whole("drive.json")], ...]
-    limits: Annotated[shared.KeptLimits | None, LEFT_OUT, Doc("Of a NONE-WITHIN only.")] = None
-    core: Annotated[tuple[str, ...], LEFT_OUT, Doc("Of an IMPOSSIBLE only: parts that clash.")] = ()
-    certificate: Annotated[
-        object,
-        LEFT_OUT,
-        Whole("certificate.json"),
-        Doc("Of an IMPOSSIBLE only: that these parts never hold together."),
-    ] = None
-    seconds: Stages = field(default_factory=dict)
-    sizes: Sizes = field(default_factory=dict)
-
-
-@dataclass(frozen=True, kw_only=True)
-class WitnessData(shared.OnRoad, shared.Heading):
-    """Drives for scenarios and formulas."""
-
-    schema: Literal["roadproof/witness/1"] = SCHEMA
-    verdicts: tuple[ResultData, ...]
-
-
-def result_data(x: SearchResult) -> ResultData:
-    """Return what came of a search as ``--json`` prints it."""
-    proof = x.certificate
-    stages = {**x.cost.stages, "all": x.cost.seconds} if x.cost.seconds else {}
-    return ResultData(
-        scenario=x.scenario,
-        set=x.set_name,
-        formula=x.query.text,
-        road=x.road,
-        verdict=x.verdict,
-        view="dense" if x.limits is None else "grid",
-        reason=x.reason,
-        natural=x.natural,
-        drives=tuple(judged.as_data() for judged in x.drives),
-        limits=x.limits,
-        core=x.told,
-        certificate=None if proof is None else certificate_data(replace(proof, tableau=None)),
-        seconds={stage: round(value, 4) for stage, value in stages.items()},
-        sizes=dict(x.cost.sizes),
-    )

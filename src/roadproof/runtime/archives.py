@@ -1,7 +1,7 @@
-"""What is known before it is asked: shipped with roadproof, or kept of this user's earlier runs.
+"""Archives of known answers: those that are shipped with roadproof, and those of this user's earlier runs.
 
-An archive for each kind of question has a line for each key. What is kept stands under its key for this
-program alone.
+An archive for each kind of question has a line for each key. Answers of earlier runs are used only by the
+same program (``program_digest``).
 """
 
 import hashlib
@@ -12,10 +12,9 @@ from functools import cache
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-from roadproof.runtime.cache import keep_bytes, kept_bytes
+from roadproof.runtime.cache import load_bytes, store_bytes
 from roadproof.runtime.canonical import digest
-from roadproof.runtime.files import write_whole
-from roadproof.runtime.package_data import program, shipped
+from roadproof.runtime.package_data import program_digest, shipped_folder
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import VERSION
 
@@ -25,7 +24,7 @@ Origin: TypeAlias = Literal["shipped", "cache"]
 
 
 def origins_in_words(origins: Sequence[Origin], total: int) -> str:
-    """Return a line that says how many answers of ``total`` were known; empty where none was."""
+    """Return a line that counts the known answers among ``total``; empty if there are none."""
     if not origins:
         return ""
     of_release = origins.count("shipped")
@@ -36,16 +35,16 @@ def origins_in_words(origins: Sequence[Origin], total: int) -> str:
 
 
 def is_off() -> bool:
-    """Return whether nothing is known and nothing is kept."""
+    """Return whether known answers are neither used nor stored."""
     return os.environ.get(SWITCH) == "off"
 
 
 @dataclass(frozen=True)
-class Known:
-    """A text that is known under a key, and from where.
+class KnownText:
+    """A text that is known under a key, and its origin.
 
-    What an earlier run kept was judged by it. What is shipped is judged by each program once, which
-    ``note_judged`` remembers.
+    An answer of an earlier run was judged when it was stored. A shipped answer is judged once by each
+    program, which ``note_judged`` records.
     """
 
     key: str
@@ -54,36 +53,36 @@ class Known:
 
     @property
     def is_judged(self) -> bool:
-        """Whether this program has judged the text under this key."""
-        return self.origin == "cache" or kept_bytes(JUDGED, self._noted) is not None
+        """Return whether this program has judged the text under this key."""
+        return self.origin == "cache" or load_bytes(JUDGED, self._record_key) is not None
 
     def note_judged(self) -> None:
-        """Remember that this program has judged the text under this key."""
+        """Record that this program has judged the text under this key."""
         if not self.is_judged:
-            keep_bytes(JUDGED, self._noted, b"")
+            store_bytes(JUDGED, self._record_key, b"")
 
     @property
-    def _noted(self) -> str:
-        return digest(self.key, self.text, program())
+    def _record_key(self) -> str:
+        return digest(self.key, self.text, program_digest())
 
 
-def recall(kind: str, key: str) -> Known | None:
-    """Return the JSON text that is known under a key."""
-    if key in archived(kind):
-        return Known(key, archived(kind)[key], "shipped")
-    data = kept_bytes(CACHE, digest(key, program()))
-    return None if data is None else Known(key, lzma.decompress(data).decode(), "cache")
+def recall(kind: str, key: str) -> KnownText | None:
+    """Return the JSON text that is known under a key, else None."""
+    if key in shipped_answers(kind):
+        return KnownText(key, shipped_answers(kind)[key], "shipped")
+    data = load_bytes(CACHE, digest(key, program_digest()))
+    return None if data is None else KnownText(key, lzma.decompress(data).decode(), "cache")
 
 
 def remember(key: str, text: str) -> None:
-    """Keep a JSON text for later runs of this program."""
-    keep_bytes(CACHE, digest(key, program()), lzma.compress(text.encode(), preset=0))
+    """Store a JSON text for later runs of this program."""
+    store_bytes(CACHE, digest(key, program_digest()), lzma.compress(text.encode(), preset=0))
 
 
 @cache
-def archived(kind: str) -> Mapping[str, str]:
-    """Return the answers to questions of a kind that are shipped, as JSON by key; none where they changed."""
-    path = archive(shipped("proofs") / "known", kind)
+def shipped_answers(kind: str) -> Mapping[str, str]:
+    """Return the shipped answers to questions of a kind, as JSON by key; empty if the file is damaged."""
+    path = archive_path(shipped_folder("proofs") / "known", kind)
     if not path.is_file():
         return {}
     try:
@@ -95,16 +94,6 @@ def archived(kind: str) -> Mapping[str, str]:
     return {key: text for key, _, text in (line.partition(" ") for line in lines.splitlines())}
 
 
-def archive(folder: Path, kind: str) -> Path:
-    """Return the path of the answers that are shipped."""
+def archive_path(folder: Path, kind: str) -> Path:
+    """Return the path of the shipped answers to questions of a kind."""
     return folder / f"{kind}.xz"
-
-
-def ship(folder: Path, kind: str, answers: Mapping[str, str]) -> Path:
-    """Write answers, as JSON by key, as those that are shipped."""
-    lines = "".join(f"{key} {text}\n" for key, text in sorted(answers.items()))
-    content = f"{hashlib.sha256(lines.encode()).hexdigest()}\n{lines}"
-    path = archive(folder, kind)
-    write_whole(path, lzma.compress(content.encode(), preset=9 | lzma.PRESET_EXTREME))
-    archived.cache_clear()
-    return path

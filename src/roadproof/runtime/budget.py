@@ -1,17 +1,18 @@
-"""How much work an answer may cost: counted, so that the same question has the same answer on every machine.
+"""Limits of work and its cost; limits are counted, so a question has the same answer on every machine.
 
-One unit is about a second of a solver on an idle machine; each solver's own count (z3's resource limit,
-HiGHS' iterations and nodes) is converted where the solver lives. Wall clock is a backstop for the case
-that counting fails, and what it cuts off is in doubt: ``BudgetExceeded``.
+One unit is about a second of a solver on an idle machine. Each solver's own count (z3's resource limit,
+HiGHS' iterations and nodes) is converted where the solver is called. Wall-clock time is a backstop in case
+counting fails; a search that it cuts off raises ``BudgetExceeded``, and its verdict is UNKNOWN.
 """
 
 import math
 import time
+from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from typing import Self
 
 from roadproof.errors import RoadproofError
-from roadproof.reasons import Reason, Why
+from roadproof.reasons import Reason, ReasonKind
 from roadproof.runtime.records import dataclass
 
 # Wall-clock seconds that a unit of work may take before the backstop ends it, and the least backstop: enough
@@ -21,12 +22,12 @@ LEAST_BACKSTOP = 600.0
 
 
 class BudgetExceeded(RoadproofError):
-    """The backstop has passed: what was asked stays unanswered, whatever was found of it by then."""
+    """The error of a search that the backstop has cut off; partial results are discarded."""
 
     exit_code = 20
 
     def __init__(self, seconds: float) -> None:
-        self.reason = Why.CLOCK(seconds)
+        self.reason = ReasonKind.CLOCK(seconds)
         super().__init__(self.reason)
         self.seconds = seconds
 
@@ -36,45 +37,45 @@ class BudgetExceeded(RoadproofError):
 
 @dataclass(frozen=True)
 class Effort:
-    """What one search may cost: ``units`` of work, and ``timeout`` seconds of wall clock as a backstop.
+    """The limits of one search: ``units`` of work, and ``timeout`` seconds of wall clock as a backstop.
 
-    Without ``timeout`` the backstop follows from the units. ``begun``: since when the seconds of a
-    ``timeout`` run, which several searches share; None where they run from each meter on.
+    Without ``timeout`` the backstop follows from the units. ``started``: when the seconds of a ``timeout``
+    began, for several searches that share it; None if they begin with each meter.
     """
 
     units: float = 60.0
     timeout: float | None = None
-    begun: float | None = field(default=None, repr=False, compare=False)
+    started: float | None = field(default=None, repr=False, compare=False)
 
-    def running(self) -> "Effort":
-        """The same limits, with the seconds of a ``timeout`` running from now on, if not before."""
-        if self.timeout is None or self.begun is not None:
+    def with_clock_started(self) -> "Effort":
+        """Return these limits with the ``timeout`` started now, unless it is running already."""
+        if self.timeout is None or self.started is not None:
             return self
-        return replace(self, begun=time.monotonic())
+        return replace(self, started=time.monotonic())
 
-    def of(self, units: float) -> "Effort":
-        """Other units under the same backstop."""
+    def with_units(self, units: float) -> "Effort":
+        """Return the limits with other units and the same backstop."""
         return replace(self, units=units)
 
     def meter(self) -> "Budget":
-        """A meter that begins to count units now, and seconds too unless they run already."""
+        """Return a meter that starts to count units now, and seconds unless they run already."""
         seconds = self.timeout if self.timeout is not None else backstop(self.units)
-        begun = time.monotonic() if self.begun is None else self.begun
-        return Budget(self.units, seconds, begun=begun)
+        started = time.monotonic() if self.started is None else self.started
+        return Budget(self.units, seconds, started=started)
 
 
 @dataclass(frozen=True)
 class Work:
-    """The work for a claim: ``effort`` for a drive, ``proof`` units for a proof before one is looked for.
+    """Limits and options of the work on one claim.
 
-    ``seek_drive``: whether a drive is looked for that refutes a claim about all traces; ``explain``: whether
-    it is shown that there is no drive, where none is found. ``alone``: nothing is taken from other claims;
-    ``recast``: whether known drives are tried with their vehicles in other roles; ``once``: whether no drive
-    is looked for that was looked for in vain, also on other roads; ``disprove``: whether a proof that there
-    is no drive is tried before one is looked for. ``staged``: whether natural drives, others, and that there
-    is none are looked for one after the other, with the effort for each. ``moves``: whether drives that are
-    known are put on other roads; ``zones``: also on their own with other zones. ``simplify``: whether a drive
-    that a search has found is made simpler, and a claim is in doubt for which no search can be set up.
+    ``effort``: for a drive; ``proof``: units for a proof that is tried first. ``seek_drive``: search for a
+    drive that refutes a claim about all traces. ``explain``: prove that no drive exists if none is found.
+    ``alone``: use no results of other claims. ``recast``: try known drives with exchanged roles. ``once``:
+    skip searches that failed before, also on other roads. ``disprove``: first try to prove that no drive
+    exists. ``staged``: search for natural drives, then for others, then prove that there are none, each with
+    the whole effort. ``moves``: move known drives to other roads; ``zones``: also to other zones.
+    ``simplify``: simplify drives that are found, and return UNKNOWN for a claim for which no search can be
+    set up.
     """
 
     effort: Effort = field(default_factory=Effort)
@@ -93,60 +94,85 @@ class Work:
 
 @dataclass
 class Budget:
-    """The work left for one search: ``limit`` units in all, ``seconds`` of wall clock from ``begun``.
+    """A meter of the work left for one search: ``limit`` units, and ``seconds`` of wall clock since
+    ``started``.
 
-    A part of a search has a meter of its own (``part``), which spends from the whole's as well.
+    A part of a search has a meter of its own (``part``), which counts in the meter of the whole as well.
     """
 
     limit: float
     seconds: float
-    whole: "Budget | None" = None
+    parent: "Budget | None" = None
     spent: float = 0.0
-    begun: float = field(default_factory=lambda: time.monotonic())
+    started: float = field(default_factory=lambda: time.monotonic())
 
     def left(self) -> float:
-        """Units left; never below 0."""
-        above = math.inf if self.whole is None else self.whole.left()
+        """Return the units left; never below 0."""
+        above = math.inf if self.parent is None else self.parent.left()
         return max(0.0, min(self.limit - self.spent, above))
 
     def spend(self, units: float) -> None:
         """Count ``units`` here and in the whole."""
         self.spent += units
-        if self.whole is not None:
-            self.whole.spend(units)
+        if self.parent is not None:
+            self.parent.spend(units)
 
     def effort(self) -> Effort:
-        """What is left, for a search with a meter of its own. Raises ``BudgetExceeded``."""
+        """Return the remaining limits, for a search with a meter of its own. Raises ``BudgetExceeded``."""
         return Effort(max(1.0, self.left()), self.seconds_left())
 
     def part(self, limit: float) -> "Budget":
-        """A meter for a part of the search, of at most ``limit`` units."""
-        return Budget(limit, self.seconds, self, begun=self.begun)
+        """Return a meter for a part of the search, of at most ``limit`` units."""
+        return Budget(limit, self.seconds, self, started=self.started)
 
-    def apart(self, limit: float) -> "Budget":
-        """A meter of ``limit`` units of its own, whatever is left of these, under the same backstop."""
-        return Budget(limit, self.seconds, begun=self.begun)
+    def separate(self, limit: float) -> "Budget":
+        """Return a separate meter of ``limit`` units under the same backstop; it does not count here."""
+        return Budget(limit, self.seconds, started=self.started)
 
     def seconds_left(self) -> float:
-        """Wall-clock seconds until the backstop. Raises ``BudgetExceeded``."""
-        left = self.seconds - (time.monotonic() - self.begun)
+        """Return the wall-clock seconds until the backstop. Raises ``BudgetExceeded``."""
+        left = self.seconds - (time.monotonic() - self.started)
         if left <= 0:
             raise BudgetExceeded(self.seconds)
         return left
 
-    def is_out(self) -> bool:
-        """Whether the units are used up. Raises ``BudgetExceeded``."""
+    def is_exhausted(self) -> bool:
+        """Return whether the units are used up. Raises ``BudgetExceeded``."""
         self.seconds_left()
         return self.left() <= 0
 
     def reason(self) -> Reason:
-        """Why there is no answer, where the units are used up."""
-        above = self.whole
+        """Return the reason for UNKNOWN when the units are used up."""
+        above = self.parent
         if above is not None and above.left() <= 0:
             return above.reason()
-        return Why.WORK(self.limit)
+        return ReasonKind.WORK(self.limit)
 
 
 def backstop(units: float) -> float:
-    """Wall-clock seconds after which a search with a limit of ``units`` is cut off."""
+    """Return the wall-clock seconds after which a search with a limit of ``units`` is cut off."""
     return max(LEAST_BACKSTOP, SECONDS_A_UNIT * units)
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Wall-clock seconds, in all and by stage; sizes of the last problem that was solved; units of work."""
+
+    seconds: float = 0.0
+    stages: Mapping[str, float] = field(default_factory=dict)
+    sizes: Mapping[str, int] = field(default_factory=dict)
+    work: float | None = None
+
+
+NO_COST = Cost()
+"""The cost of an answer that was known."""
+
+
+def sum_of(costs: Sequence[Cost]) -> Cost:
+    """Return the sum of several costs; the sizes are those of the first that has any."""
+    stages: dict[str, float] = {}
+    for cost in costs:
+        for name, seconds in cost.stages.items():
+            stages[name] = stages.get(name, 0.0) + seconds
+    sizes = next((x.sizes for x in costs if x.sizes), {})
+    return Cost(sum(x.seconds for x in costs), stages, sizes)

@@ -1,7 +1,7 @@
-"""What takes long to make and never changes, kept for the next run in a folder where only this user writes.
+"""A cache on disk for values that take long to compute, in a folder where only this user may write.
 
-Nothing rests on it: what is not there, or not as it was written, is made again. It is kept under a digest of
-all that it is made of. ``ROADPROOF_CACHE=off`` keeps nothing.
+Each entry is stored under a digest of everything that it depends on. Entries that are missing or damaged are
+computed again. ``ROADPROOF_CACHE=off`` disables the cache.
 """
 
 import contextlib
@@ -10,79 +10,67 @@ import os
 import pickle
 import stat
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
 from roadproof.errors import InputError
-from roadproof.runtime.files import write_whole
+from roadproof.runtime.files import write_atomic
 
 T = TypeVar("T")
 
 SWITCH = "ROADPROOF_CACHE"
 _OLD = 60 * 24 * 3600.0  # seconds
 MOST_BYTES = 200_000_000
-"""So much a folder of the cache holds."""
+"""The largest size of a folder of the cache."""
 
 
 def private_folder(name: str) -> Path | None:
-    """A folder of this user's cache, in which nobody else can write; None where there is none such."""
+    """Return a folder of this user's cache in which nobody else can write; None if there cannot be one."""
     base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     if os.environ.get(SWITCH) == "off" or not os.path.isabs(base):
         return None
     home = Path(base) / "roadproof" / name
     try:
-        for folder in (home.parent, home):  # a mode is that of the last folder, others follow the umask
+        for folder in (home.parent, home):  # mkdir sets the mode of the last folder only
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     except OSError:
         return None
-    return home if is_ours(home) and is_ours(home.parent) else None
+    return home if is_private(home) and is_private(home.parent) else None
 
 
-@contextlib.contextmanager
-def one_at_a_time(folder: Path) -> Iterator[None]:
-    """Wait until no other process works in a folder of the cache; the system lets go of it with us."""
-    with contextlib.ExitStack() as held:
-        with contextlib.suppress(ImportError, OSError):  # where there are no locks, two may do the same work
-            import fcntl
-
-            handle = os.open(folder, os.O_RDONLY)
-            held.callback(os.close, handle)
-            fcntl.flock(handle, fcntl.LOCK_EX)
-        yield
-
-
-def is_ours(path: Path) -> bool:
-    """Whether a file or folder is no link, belongs to this user, and nobody else may write there."""
+def is_private(path: Path) -> bool:
+    """Return whether a path is no link, belongs to this user, and is writable by nobody else."""
     try:
-        found = path.lstat()
+        status = path.lstat()
     except OSError:
         return False
-    kind = stat.S_ISDIR(found.st_mode) or stat.S_ISREG(found.st_mode)
-    return kind and found.st_uid == os.getuid() and not found.st_mode & 0o022
+    kind = stat.S_ISDIR(status.st_mode) or stat.S_ISREG(status.st_mode)
+    return kind and status.st_uid == os.getuid() and not status.st_mode & 0o022
 
 
-def remembered(name: str, made_of: bytes, make: Callable[[], T]) -> T:
-    """What ``make`` makes of ``made_of`` and nothing else: taken from the cache, or made and put there.
+def cached(name: str, made_of: bytes, make: Callable[[], T]) -> T:
+    """Return ``make()``, from the cache if it is there.
 
-    It must be something that can be pickled. ``name`` tells what it is.
+    ``make`` must depend on ``made_of`` alone, and its result must be picklable. ``name``: the first part of
+    the file's name.
     """
     key = f"{name}-{hashlib.sha256(made_of).hexdigest()[:32]}"
-    with contextlib.suppress(Exception):  # whatever it is that cannot be read is made again
-        data = kept_bytes("made", key, made_of)
+    with contextlib.suppress(Exception):  # an entry that cannot be read is computed again
+        data = load_bytes("made", key, made_of)
         if data is not None:
-            found: T = pickle.loads(data)
-            return found
+            value: T = pickle.loads(data)
+            return value
     made = make()
-    keep_bytes("made", key, pickle.dumps(made, pickle.HIGHEST_PROTOCOL), made_of)
-    make_room("made")
+    store_bytes("made", key, pickle.dumps(made, pickle.HIGHEST_PROTOCOL), made_of)
+    evict_old("made")
     return made
 
 
-def kept_bytes(folder: str, name: str, made_of: bytes = b"") -> bytes | None:
-    """What was kept under a name in a folder of the cache; None where it is not there as it was written."""
+def load_bytes(folder: str, name: str, made_of: bytes = b"") -> bytes | None:
+    """Return what was stored under a name; None if it is missing or damaged, or made of something else."""
     home = _home(folder)
-    if home is None or not is_ours(home / name):
+    if home is None or not is_private(home / name):
         return None
     with contextlib.suppress(OSError):  # another run may remove it
         content = (home / name).read_bytes()
@@ -93,31 +81,31 @@ def kept_bytes(folder: str, name: str, made_of: bytes = b"") -> bytes | None:
     return None
 
 
-def keep_bytes(folder: str, name: str, data: bytes, made_of: bytes = b"") -> None:
-    """Keep bytes under a name, made of ``made_of``."""
+def store_bytes(folder: str, name: str, data: bytes, made_of: bytes = b"") -> None:
+    """Store bytes under a name; ``made_of``: everything that they depend on."""
     home = _home(folder)
     if home is not None:
         with contextlib.suppress(InputError, OSError):
-            write_whole(home / name, hashlib.sha256(name.encode() + made_of + data).digest() + data)
+            write_atomic(home / name, hashlib.sha256(name.encode() + made_of + data).digest() + data)
 
 
-def make_room(folder: str) -> None:
-    """Remove what was used so long ago that its version is hardly in use, and the oldest of too much."""
+def evict_old(folder: str) -> None:
+    """Remove entries that were not used for 60 days, and the oldest beyond ``MOST_BYTES``."""
     total = 0
-    for path, said in sorted(files(folder).items(), key=lambda x: -x[1].st_mtime):
-        total += said.st_size
-        if said.st_mtime < time.time() - _OLD or total > MOST_BYTES:
+    for path, status in sorted(files(folder).items(), key=lambda x: -x[1].st_mtime):
+        total += status.st_size
+        if status.st_mtime < time.time() - _OLD or total > MOST_BYTES:
             with contextlib.suppress(OSError):
                 path.unlink()
 
 
 def files(folder: str) -> dict[Path, os.stat_result]:
-    """The files of a folder of the cache, with what the system says of each."""
-    home, found = _home(folder), {}
+    """Return the files of a folder of the cache with their status."""
+    home, statuses = _home(folder), {}
     for path in () if home is None else home.iterdir():
         with contextlib.suppress(OSError):  # another run may remove it
-            found[path] = path.lstat()
-    return found
+            statuses[path] = path.lstat()
+    return statuses
 
 
 def _home(folder: str) -> Path | None:

@@ -1,8 +1,8 @@
-"""The digest of plain data: the same in every process, on every machine, however the data are built.
+"""A digest of plain data that is the same in every process and on every machine.
 
-It depends on types, field names and values alone: not on the order of mappings and sets, on shared parts, on
-Python's hash seed, or on fields that do not count when two values are compared, such as places in texts.
-A path has no digest, since it says where a file is and not what is in it.
+It depends on types, field names and values alone. The order of mappings and sets, shared parts, Python's hash
+seed and fields that are not compared (such as places in texts) have no influence. A path has no digest, since
+it says where a file is and not what it contains.
 """
 
 import hashlib
@@ -17,12 +17,14 @@ _REMEMBERED = "_content"
 
 
 def digest(*values: object) -> str:
-    """SHA-256 of values in 64 hexadecimal digits. Raises ``TypeError`` for what is no plain data."""
+    """Return the SHA-256 of the values in 64 hexadecimal digits. Raises ``TypeError`` for other than plain
+    data.
+    """
     return hashlib.sha256(encoded(values)).hexdigest()
 
 
 def encoded(value: object) -> bytes:
-    """The only text of a value; no other value has it. Raises ``TypeError``."""
+    """Return the canonical encoding of a value, which no other value has. Raises ``TypeError``."""
     match value:
         case None:
             return b"N"
@@ -46,7 +48,7 @@ def encoded(value: object) -> bytes:
             return b"m%d:" % len(value) + b"".join(sorted(encoded(pair) for pair in value.items()))
         case Set():
             return b"u%d:" % len(value) + b"".join(sorted(map(encoded, value)))
-        case _:
+        case _:  # open: any dataclass
             return _object(value)
 
 
@@ -60,7 +62,7 @@ def _sequence(values: Sequence[object]) -> bytes:
 
 
 def _object(value: object) -> bytes:
-    """The digest of a dataclass, which nodes of trees remember."""
+    """Return the digest of a dataclass, which nodes of trees cache."""
     if not is_dataclass(value) or isinstance(value, type):
         raise TypeError(f"{type(value).__qualname__} has no digest: it is no plain data ({str(value)[:60]})")
     known: bytes | None = vars(value).get(_REMEMBERED)
@@ -75,6 +77,6 @@ def _object(value: object) -> bytes:
 
 @cache
 def _head_of(kind: Any) -> tuple[bytes, tuple[str, ...]]:
-    """How the digest of a class begins, and the names of its fields that count in comparisons."""
+    """Return how the encoding of a class begins, and the names of its compared fields."""
     names = tuple(field.name for field in fields(kind) if field.compare)
     return b"o" + _text(kind.__qualname__) + _sequence(names), names

@@ -1,4 +1,4 @@
-"""Work for a cluster of dask, which lives here: jobs of 0.1 s to minutes, on workers that come and go."""
+"""Execution of jobs of 0.1 s to minutes on a dask cluster, whose workers may come and go."""
 
 import gc
 import importlib.metadata
@@ -8,10 +8,10 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from roadproof.errors import InputError, MissingSolverError, UsageError
-from roadproof.reasons import Why
-from roadproof.runtime.executors import Cluster, LostJob, try_again
+from roadproof.reasons import ReasonKind
+from roadproof.runtime.executors import Cluster, LostJob, run_with_retries
 from roadproof.runtime.memory import keep_freed_memory
-from roadproof.runtime.worker import end_here
+from roadproof.runtime.worker import mark_as_worker
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -20,33 +20,34 @@ Job = TypeVar("Job")
 Answer = TypeVar("Answer")
 
 _PATIENCE = 30  # seconds for a scheduler to answer
-# What kills a worker is not tried again among others; workers neither look at their own stack every 10 ms nor
-# give memory back all the time.
+# Dask itself retries no job that kills a worker. Workers neither profile themselves every 10 ms nor return
+# memory to the system after each job.
 _SETTINGS = {
     "distributed.scheduler.allowed-failures": 1,
     "distributed.worker.profile.enabled": False,
     "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": 1 << 30,
 }
-_AHEAD = 2  # jobs for each worker that the scheduler has at once, so that none waits for its next one
+_AHEAD = 2  # jobs for each worker that the scheduler holds, so that no worker is idle
 
 
-def answers_of(
+def run_jobs(
     function: Callable[[Job], Answer], jobs: Sequence[Job], cluster: Cluster
 ) -> Generator[tuple[int, Answer | LostJob], None, None]:
-    """As ``workers.answers_of``, on a cluster. What a job needs of files has to be where workers see it.
+    """Yield the index and the answer of every job on a cluster, as jobs finish.
 
-    Raises ``MissingSolverError`` where dask is not installed, ``InputError`` where no scheduler answers,
-    ``UsageError`` where workers have another version of roadproof.
+    Files that a job reads must be visible to the workers. Raises ``MissingSolverError`` if dask is not
+    installed, ``InputError`` if no scheduler answers, ``UsageError`` if workers have another version of
+    roadproof.
     """
     client = _client(cluster)
-    shared = client.submit(_same, function, pure=False)  # made again where its worker ends
-    yield from try_again(partial(_try_once, client, shared, jobs), len(jobs), Why.WORKERS)
+    shared = client.submit(_identity, function, pure=False)  # dask recomputes it if its worker dies
+    yield from run_with_retries(partial(_run_once, client, shared, jobs), len(jobs), ReasonKind.WORKERS)
 
 
-def _try_once(
+def _run_once(
     client: "Client", shared: "Future", jobs: Sequence[Job], places: Sequence[int], died: dict[int, str]
 ) -> Generator[tuple[int, Any], None, None]:
-    """The answers at ``places``; where workers ended instead, ``died`` has the place, without a reason."""
+    """Yield the answers at ``places``; if workers die, ``died`` gets the index, without a reason."""
     from distributed import as_completed
     from distributed.scheduler import KilledWorker
 
@@ -55,6 +56,7 @@ def _try_once(
     running = as_completed()
 
     def submit(count: int) -> None:
+        """Send the next jobs to the scheduler."""
         for place in islice(waiting, count):
             future = client.submit(_serve, _our_version(), shared, jobs[place], pure=False)
             placed[future] = place
@@ -77,29 +79,29 @@ def _try_once(
         client.cancel(list(placed), force=True)
 
 
-def _same(function: Answer) -> Answer:
+def _identity(function: Answer) -> Answer:
     return function
 
 
 def _serve(version: str, function: Callable[[Job], Answer], job: Job) -> Answer:
-    """A job on a worker, which may have come after the versions were checked."""
+    """Run a job on a worker, which may have joined after the versions were checked."""
     _check_version(version, {_our_version()})
-    end_here()
+    mark_as_worker()
     keep_freed_memory()
     answer = function(job)
-    _freeze()
+    _freeze_objects()
     return answer
 
 
 @cache
-def _freeze() -> None:
-    """Once, after the first job: what it has imported stays, and is not walked through at each collection."""
+def _freeze_objects() -> None:
+    """Exclude imported objects from garbage collection after the first job."""
     gc.freeze()
 
 
 @cache
 def _client(cluster: Cluster) -> "Client":
-    """A client of the scheduler, which dask closes when this process ends."""
+    """Return a client of the scheduler, which dask closes when this process ends."""
     try:
         import dask
         from distributed import Client, LocalCluster, Security
@@ -124,21 +126,21 @@ def _client(cluster: Cluster) -> "Client":
     if cluster.tell is not None:
         cluster.tell(f"dashboard at {client.dashboard_link}")
     try:
-        found = client.run(importlib.metadata.version, "roadproof")
+        versions = client.run(importlib.metadata.version, "roadproof")
     except importlib.metadata.PackageNotFoundError:
         raise UsageError("cluster: a worker has no roadproof; install the same version on all") from None
-    _check_version(_our_version(), {str(x) for x in found.values()})
+    _check_version(_our_version(), {str(x) for x in versions.values()})
     return client
 
 
 def _security(cluster: Cluster, kind: Callable[..., Any]) -> Any:
-    """How the scheduler is spoken to; None where dask's configuration says it, or nobody does."""
-    given = {
+    """Return the TLS settings; None if dask's configuration has them, or there are none."""
+    files = {
         "tls_ca_file": cluster.authority,
         "tls_client_cert": cluster.certificate,
         "tls_client_key": cluster.key,
     }
-    named = {name: file for name, file in given.items() if file is not None}
+    named = {name: file for name, file in files.items() if file is not None}
     return kind(**named, require_encryption=True) if named else None
 
 
@@ -147,7 +149,9 @@ def _our_version() -> str:
 
 
 def _check_version(ours: str, theirs: set[str]) -> None:
-    """Raises ``UsageError`` where there are others than ours."""
+    """Raise ``UsageError`` if workers have another version than ours."""
     if theirs - {ours}:
-        told = ", ".join(sorted(theirs))
-        raise UsageError(f"cluster: roadproof is {ours} here and {told} on workers; install the same on all")
+        listing = ", ".join(sorted(theirs))
+        raise UsageError(
+            f"cluster: roadproof is {ours} here and {listing} on workers; install the same on all"
+        )

@@ -1,4 +1,4 @@
-"""Jobs given to processes of this machine, or to a cluster."""
+"""Execution of jobs in processes of this machine, or on a cluster."""
 
 from collections.abc import Callable, Generator, Sequence
 from typing import TypeVar
@@ -9,15 +9,18 @@ Job = TypeVar("Job")
 Answer = TypeVar("Answer")
 
 
-def answers_of(
-    function: Callable[[Job], Answer], jobs: Sequence[Job], hands: Executor, fresh: bool = False
+def run_jobs(
+    function: Callable[[Job], Answer], jobs: Sequence[Job], executor: Executor, fresh: bool = False
 ) -> Generator[tuple[int, Answer | LostJob], None, None]:
-    """Yield the place of each job with its answer, in the order in which they end."""
-    if hands.cluster is None:
+    """Yield the index of each job with its answer, as jobs finish.
+
+    ``fresh``: processes share nothing with this one (see ``worker.Worker``).
+    """
+    if executor.cluster is None:
         from roadproof.runtime import process_pool
 
-        yield from process_pool.answers_of(function, jobs, hands.processes, fresh)
+        yield from process_pool.run_jobs(function, jobs, executor.processes, fresh)
         return
     from roadproof.runtime import dask_executor  # dask takes long to import
 
-    yield from dask_executor.answers_of(function, jobs, hands.cluster)
+    yield from dask_executor.run_jobs(function, jobs, executor.cluster)

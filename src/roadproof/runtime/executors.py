@@ -1,18 +1,22 @@
-"""Who does the work of a long question: processes here, the workers of a cluster, one of several runs.
+"""Executors for long questions: local processes, the workers of a cluster, or one shard of several runs.
 
-A job whose process ends before it is done is tried once more, alone.
+A job whose process dies is tried again, at last alone.
 """
+
+from __future__ import annotations
 
 import re
 import sys
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import field
-from typing import TypeAlias, TypeVar
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from roadproof.errors import UsageError
-from roadproof.reasons import Reason, Why
 from roadproof.runtime.records import dataclass
+
+if TYPE_CHECKING:
+    from roadproof.reasons import Reason, ReasonKind
 
 Item = TypeVar("Item")
 
@@ -23,9 +27,9 @@ _ADDRESS = re.compile(r"(tcp|tls|ws|wss)://\S+:[0-9]{1,5}")
 
 @dataclass(frozen=True)
 class Shard:
-    """The share of one of several runs that divide a question without talking to each other.
+    """The part of a question that one of several independent runs works on.
 
-    ``number`` counts from 1 to ``of``. Raises ``UsageError`` for a share that there is none of.
+    ``number`` counts from 1 to ``of``. Raises ``UsageError`` for other numbers.
     """
 
     number: int
@@ -36,21 +40,21 @@ class Shard:
             raise UsageError(f"shard={self}: write K/N with K from 1 to N, such as 1/4")
 
     @classmethod
-    def read(cls, text: str) -> "Shard":
-        """``2/4``. Raises ``UsageError``."""
-        found = _SHARE.fullmatch(text)
-        if found is None:
+    def read(cls, text: str) -> Shard:
+        """Return the shard that a text such as ``2/4`` names. Raises ``UsageError``."""
+        match = _SHARE.fullmatch(text)
+        if match is None:
             raise UsageError(f"shard={text[:40]}: write K/N with K from 1 to N, such as 1/4")
-        return cls(int(found[1]), int(found[2]))
+        return cls(int(match[1]), int(match[2]))
 
-    def has(self, name: str) -> bool:
-        """Whether the piece of a name is in this share: the same on every machine, whatever else is known."""
-        import hashlib  # here, because --help need not wait for it
+    def includes(self, name: str) -> bool:
+        """Return whether a named piece belongs to this shard; it depends on the name alone."""
+        import hashlib  # here, so that --help is fast
 
         return int(hashlib.sha256(name.encode()).hexdigest()[:12], 16) % self.of == self.number - 1
 
     def among(self, items: Sequence[Item]) -> Sequence[Item]:
-        """Every ``of``-th item, of a list that all runs have alike."""
+        """Return every ``of``-th item of a list that is the same in all runs."""
         return items[self.number - 1 :: self.of]
 
     def __str__(self) -> str:
@@ -59,11 +63,10 @@ class Shard:
 
 @dataclass(frozen=True)
 class Cluster:
-    """A cluster of dask: the ``address`` of its scheduler, or ``local:N`` for one of N processes here.
+    """A dask cluster: the ``address`` of its scheduler, or ``local:N`` for a new one with N local processes.
 
-    ``authority``, ``certificate`` and ``key`` are files for a scheduler that is spoken to with TLS; where
-    they are not given dask's own configuration says them. ``tell`` is told where its dashboard is. Raises
-    ``UsageError``.
+    ``authority``, ``certificate`` and ``key`` are files for TLS; without them, dask's own configuration
+    applies. ``tell`` is called with a line that names the dashboard. Raises ``UsageError``.
     """
 
     address: str
@@ -81,14 +84,14 @@ class Cluster:
 
     @property
     def local(self) -> int:
-        """So many processes here; 0 for a cluster that is there already."""
-        found = _LOCAL.fullmatch(self.address)
-        return 0 if found is None else int(found[1])
+        """The number of local processes of a new cluster; 0 for an existing cluster."""
+        match = _LOCAL.fullmatch(self.address)
+        return 0 if match is None else int(match[1])
 
 
 @dataclass(frozen=True)
 class Executor:
-    """``processes`` here, one a core where None; or a ``cluster``; for all of a question or a ``shard``."""
+    """Local ``processes`` (None: one a core) or a ``cluster``, for a whole question or one ``shard``."""
 
     processes: int | None = None
     cluster: Cluster | None = None
@@ -96,52 +99,54 @@ class Executor:
 
 
 Jobs: TypeAlias = int | Executor | None
-"""So many processes, one a core where None, or all that can be said of who does the work."""
+"""The number of processes, None for one a core, or an ``Executor``."""
 
 
-def hands_of(jobs: Jobs) -> Executor:
-    """Who does the work, in one form. Raises ``UsageError`` where no process would be left."""
-    hands = jobs if isinstance(jobs, Executor) else Executor(jobs)
-    if hands.processes is not None and not (isinstance(hands.processes, int) and hands.processes > 0):
-        raise UsageError(f"jobs={hands.processes!r}: write a whole number greater than 0")
-    return hands
+def executor_for(jobs: Jobs) -> Executor:
+    """Return an ``Executor`` for a number of processes. Raises ``UsageError`` for a number below 1."""
+    executor = jobs if isinstance(jobs, Executor) else Executor(jobs)
+    count = executor.processes
+    if count is not None and not (isinstance(count, int) and count > 0):
+        raise UsageError(f"jobs={count!r}: write a whole number greater than 0")
+    return executor
 
 
 Answer = TypeVar("Answer")
-# The answers of jobs at some places; where a process ended instead, the mapping gets the reason.
-Attempt: TypeAlias = Callable[[Sequence[int], dict[int, str]], Generator[tuple[int, Answer], None, None]]
+# Yields the answers of jobs at some indices; the mapping gets the cause for each process that died.
+RunJobs: TypeAlias = Callable[[Sequence[int], dict[int, str]], Generator[tuple[int, Answer], None, None]]
 
 
 @dataclass(frozen=True)
 class LostJob:
-    """In place of an answer: the process of the job ended each time, the last time while no other ran."""
+    """A placeholder for an answer: the process of the job died at each attempt, the last time alone."""
 
     reason: Reason
 
 
-def try_again(
-    attempt: Attempt[Answer], count: int, lost: Why
+def run_with_retries(
+    attempt: RunJobs[Answer], count: int, lost: ReasonKind
 ) -> Generator[tuple[int, Answer | LostJob], None, None]:
-    """The answers of ``count`` jobs, each with its place.
+    """Yield the index and the answer of each of ``count`` jobs.
 
-    Jobs whose process ended are tried once more when the others are done. What ends again is tried alone, so
-    that no other is taken for the one that kills. ``lost`` says that it ended.
+    Jobs whose process died are tried once more when the others are done. A job that is lost again is then
+    tried alone, so that the one that kills its process is identified. ``lost``: the kind of reason for a lost
+    job.
     """
     waiting: Sequence[int] = range(count)
     for _ in range(2):
         died: dict[int, str] = {}
-        with closing(attempt(waiting, died)) as found:
-            yield from found
+        with closing(attempt(waiting, died)) as answers:
+            yield from answers
         waiting = sorted(died)
         if len(waiting) < 2:
             break
     for place in waiting:
-        again: dict[int, str] = {}
-        with closing(attempt([place], again)) as found:
-            yield from found
-        yield from ((place, LostJob(lost(reason))) for reason in again.values())
+        died_again: dict[int, str] = {}
+        with closing(attempt([place], died_again)) as answers:
+            yield from answers
+        yield from ((place, LostJob(lost(reason))) for reason in died_again.values())
 
 
 def is_fork_unsafe() -> bool:
-    """Whether polars is imported here, whose threads may hold locks while a process forks."""
+    """Return whether polars is imported: its threads may hold locks while a process forks."""
     return "polars" in sys.modules

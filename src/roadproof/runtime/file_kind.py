@@ -1,4 +1,4 @@
-"""What a file is that was given where a table or XML is expected, named so that it can be put right."""
+"""Recognition of files of a wrong format where CSV or XML is expected, for messages with a remedy."""
 
 _BEGINNINGS: tuple[tuple[bytes, str], ...] = (
     (b"\x1f\x8b", "is compressed by gzip; unpack it first (gunzip)"),
@@ -17,13 +17,13 @@ _PAGES = (b"<!doctype html", b"<html", b"<head", b"<body")
 
 
 def other_format(content: bytes, expected: bytes = b"") -> str | None:
-    """What ``content`` is and what to do about it, where that is neither CSV nor XML; else None.
+    """Return what format ``content`` has and what to do about it; None if it may be CSV or XML.
 
-    ``expected``: how the files begin that are read.
+    ``expected``: how files of the expected format begin.
     """
-    for beginning, told in _BEGINNINGS:
+    for beginning, problem in _BEGINNINGS:
         if content.startswith(beginning) and beginning != expected:
-            return told
+            return problem
     start = content[:200].lstrip(b"\xef\xbb\xbf \t\r\n").lower()
     if start.startswith(_PAGES):
         return "is a page of HTML, such as a login or error page; download the file itself"
@@ -31,22 +31,22 @@ def other_format(content: bytes, expected: bytes = b"") -> str | None:
 
 
 def other_encoding(content: bytes) -> str | None:
-    """As ``other_format``, for text that should be UTF-8."""
+    """Return the problem and its remedy if ``content`` is UTF-16 and not UTF-8; else None."""
     if content.startswith(_UTF_16) or any(content[k:200:2].count(0) > 20 for k in (0, 1)):
         return "is text in UTF-16; save it as UTF-8"
     return None
 
 
 def other_text(content: bytes) -> str | None:
-    """As ``other_format``, for content that could not be read as text in UTF-8 or as XML."""
+    """Return the problem and its remedy for content that is no UTF-8 text or XML; None if not recognised."""
     return other_format(content) or other_encoding(content)
 
 
 def other_table(content: bytes, names: int) -> str | None:
-    """As ``other_format``, for a file that should be CSV in ASCII with ``names`` columns."""
-    told = other_text(content)
-    if told is not None:
-        return told
+    """Return the problem and its remedy for a file that should be CSV with ``names`` columns; else None."""
+    problem = other_text(content)
+    if problem is not None:
+        return problem
     line = content[:10_000].partition(b"\n")[0]
     if line.lstrip().startswith(b"<"):
         return "is XML or HTML, not a table of numbers; name the CSV file"

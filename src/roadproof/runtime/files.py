@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all: a reader never sees half of one; and reading with a limit."""
+"""Atomic writing of files (a reader never sees half of one), locks on folders, and limited reading."""
 
 import errno
 import json
@@ -10,20 +10,19 @@ from pathlib import Path
 from typing import BinaryIO
 
 from roadproof.errors import InputError
-from roadproof.runtime.file_kind import other_encoding, other_format
 
 
 @contextmanager
-def whole_file(path: Path) -> Iterator[BinaryIO]:
-    """A file to write bytes to, by way of a hidden one beside it, which is gone if anything fails.
+def atomic_file(path: Path) -> Iterator[BinaryIO]:
+    """Open a file to write bytes to; it appears under its name only when all is written.
 
-    The folder must exist. What is no file, such as /dev/null, is written to as it stands; a link is
-    followed. Raises ``InputError`` where the file cannot be written.
+    It is a hidden file until then, and is removed if anything fails. The folder must exist. A device such as
+    /dev/null is written to directly; a link is followed. Raises ``InputError`` if the file cannot be written.
     """
-    if path.is_symlink() and not _is_no_file(path):  # those of /dev are no files, wherever they lead
+    if path.is_symlink() and not _is_device(path):  # a link in /dev is a device, whatever its target
         path = path.resolve()
     try:
-        if _is_no_file(path):
+        if _is_device(path):
             with path.open("ab") as file:
                 yield file
             return
@@ -42,7 +41,7 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
         raise cannot_write(path, error) from None
 
 
-def _is_no_file(path: Path) -> bool:
+def _is_device(path: Path) -> bool:
     if path.is_dir() or not path.exists():
         return False
     return not path.is_file() or path.absolute().parts[1:2] in (("dev",), ("proc",))
@@ -58,14 +57,14 @@ _ADVICE = {
 
 
 def cannot_write(path: Path, error: OSError) -> InputError:
-    """The error for a file or folder that cannot be written: what the system says, and what helps then."""
-    told = (error.strerror or str(error)).replace("No space left", "no space left")
+    """Return the error for a file or folder that cannot be written: the system's message and a remedy."""
+    message = (error.strerror or str(error)).replace("No space left", "no space left")
     advice = _ADVICE.get(error.errno or 0, "name another folder")
-    return InputError(f"cannot write {path}: {told}; {advice}")
+    return InputError(f"cannot write {path}: {message}; {advice}")
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder, and those above it, where there is none. Raises ``InputError``, also if read-only."""
+    """Make a folder and its parents if missing. Raises ``InputError``, also for a read-only folder."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -74,18 +73,17 @@ def make_folder(folder: Path) -> None:
         raise InputError(f"cannot write into {folder}: no permission; name another folder")
 
 
-LETTING_GO = 5.0
-"""Seconds that the processes of a run which was ended from outside are given to let go of its folder."""
+RELEASE_SECONDS = 5.0
+"""Seconds that the processes of a killed run get to release its folder."""
 
 
 @contextmanager
-def hold_folder(folder: Path | None, shared: bool = False) -> Iterator[None]:
-    """Keep other runs out of a folder, which is made where there is none; the system lets go of it with us.
+def lock_folder(folder: Path | None, shared: bool = False) -> Iterator[None]:
+    """Lock a folder, which is made if missing, against other runs; the lock ends with this process.
 
-    ``shared``: but not runs that share it with this one. Raises ``InputError`` where another process holds
-    it: at once where that process lives, and after LETTING_GO where it is gone and others that it began are
-    still there. Nothing is kept out where the system or the disk knows no such locks, or where there is no
-    folder.
+    ``shared``: allow runs that also lock it as shared. Raises ``InputError`` if another process holds the
+    lock: at once if that process lives, after RELEASE_SECONDS if only its children are left. Does nothing if
+    the system or the disk has no such locks, or ``folder`` is None.
     """
     if folder is None:
         yield
@@ -98,7 +96,7 @@ def hold_folder(folder: Path | None, shared: bool = False) -> Iterator[None]:
     except (ImportError, OSError):
         yield
         return
-    latest = time.monotonic() + LETTING_GO
+    latest = time.monotonic() + RELEASE_SECONDS
     try:
         while True:
             try:
@@ -127,9 +125,9 @@ _EXITING = 0x4  # PF_EXITING of Linux
 
 
 def _holder_lives(handle: int) -> bool:
-    """Whether a process that has locked a file, ours is ``handle``, lives; False where nothing tells.
+    """Return whether a process that has locked the file of ``handle`` lives; False if that is not known.
 
-    Processes that it began have the lock too, and keep it for a moment when it is gone.
+    Its children inherit the lock, and keep it for a moment when it is gone.
     """
     try:
         inode = os.fstat(handle).st_ino
@@ -137,11 +135,11 @@ def _holder_lives(handle: int) -> bool:
         holders = [row[4] for row in rows if row[1] == "FLOCK" and row[5].endswith(f":{inode}")]
     except (OSError, IndexError):
         return False
-    return any(map(_lives, holders))
+    return any(map(_is_alive, holders))
 
 
-def _lives(pid: str) -> bool:
-    """False for a process that is gone, or about to be: a zombie, killed, or exiting."""
+def _is_alive(pid: str) -> bool:
+    """Return whether a process lives: it is neither gone, nor a zombie, nor killed, nor exiting."""
     try:
         state, *numbers = (_PROC / pid / "stat").read_text().rpartition(")")[2].split()
         lines = (_PROC / pid / "status").read_text().splitlines()
@@ -151,30 +149,30 @@ def _lives(pid: str) -> bool:
     return state not in "ZX" and not int(numbers[5]) & _EXITING and not any(x & _KILLED for x in pending)
 
 
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file, and make its folder where there is none. Raises ``InputError``."""
+def write_atomic(path: Path, content: bytes) -> None:
+    """Write a file atomically, and make its folder if it is missing. Raises ``InputError``."""
     make_folder(path.parent)
-    with whole_file(path) as file:
+    with atomic_file(path) as file:
         file.write(content)
 
 
 def write_json(path: Path, data: Mapping[str, object]) -> None:
-    """Write plain data as a JSON file, as ``write_whole``. Raises ``InputError``."""
-    write_whole(path, json_bytes(data))
+    """Write plain data as a JSON file atomically. Raises ``InputError``."""
+    write_atomic(path, json_bytes(data))
 
 
 def json_bytes(data: Mapping[str, object]) -> bytes:
-    """Plain data as the bytes of a JSON file."""
+    """Return plain data as the bytes of a JSON file."""
     return utf8(json.dumps(data, indent=2, ensure_ascii=False) + "\n")
 
 
 def utf8(text: str) -> bytes:
-    """A text in UTF-8. Bytes of a file's name that are not UTF-8 become escapes, which JSON reads again."""
+    """Encode a text as UTF-8; bytes of a file name that are not UTF-8 become escapes that JSON reads back."""
     return text.encode("utf-8", "backslashreplace")
 
 
 def refuse_name(path: Path) -> None:
-    """Raises ``InputError`` for a path that is no text: evidence may not name it, and polars takes none."""
+    """Raise ``InputError`` for a path that is no UTF-8 text: neither evidence nor polars can name it."""
     try:
         str(path).encode()
     except UnicodeEncodeError:
@@ -182,7 +180,10 @@ def refuse_name(path: Path) -> None:
 
 
 def read_limited(path: Path, most: int, advice: str) -> bytes:
-    """The bytes of a file of at most ``most``. Raises ``InputError``, with ``advice`` where it is larger."""
+    """Return the bytes of a file of at most ``most`` bytes.
+
+    Raises ``InputError`` if it cannot be read, and with ``advice`` if it is larger.
+    """
     try:
         with path.open("rb") as file:
             data = file.read(most + 1)
@@ -194,12 +195,14 @@ def read_limited(path: Path, most: int, advice: str) -> bytes:
 
 
 def read_text(path: Path, most: int, advice: str) -> str:
-    """As ``read_limited``, a text in UTF-8. Raises ``InputError`` that names files of other kinds."""
+    """Return a file of at most ``most`` bytes as UTF-8 text; see ``read_limited``. Raises ``InputError``."""
     return as_text(path, read_limited(path, most, advice))
 
 
 def as_text(path: Path, data: bytes) -> str:
-    """The text in UTF-8 that a file has. Raises ``InputError`` that names files of other kinds."""
+    """Decode the bytes of a file as UTF-8. Raises ``InputError`` that names the format of other files."""
+    from roadproof.runtime.file_kind import other_encoding, other_format  # here: it has a table of formats
+
     other = other_format(data)
     if other is not None:
         raise InputError(f"{path}: the file {other}")

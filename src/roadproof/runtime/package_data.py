@@ -1,4 +1,4 @@
-"""Where the files lie that come with roadproof beside its code: models and proofs."""
+"""The folders that are shipped beside the code: models and proofs."""
 
 import hashlib
 import os
@@ -6,11 +6,11 @@ from functools import cache
 from pathlib import Path
 
 
-def shipped(folder: str) -> Path:
-    """The folder ``models`` or ``proofs``, in a checkout as in an installed wheel.
+def shipped_folder(folder: str) -> Path:
+    """Return the folder ``models`` or ``proofs``, in a checkout as in an installed wheel.
 
-    The wheel carries them inside the package (pyproject.toml, force-include); a checkout has them at
-    its root. Raises ``FileNotFoundError`` where neither is there: the installation is broken.
+    The wheel carries them inside the package (pyproject.toml, force-include); a checkout has them at its
+    root. Raises ``FileNotFoundError`` if neither exists: the installation is broken.
     """
     package = Path(__file__).parents[1]
     for place in (package / folder, package.parents[1] / folder):
@@ -20,12 +20,18 @@ def shipped(folder: str) -> Path:
 
 
 @cache
-def program() -> str:
-    """A digest of the bytes of the whole program and of the shipped models, so that no state of it answers
-    for another. Compiled files do not count.
+def program_digest() -> str:
+    """Return a digest of all files of the program and of the shipped models, without compiled files.
+
+    It is part of the keys of cached answers, so that they are used by the same program only.
     """
+    return folder_digest(Path(__file__).parents[1], shipped_folder("models"))
+
+
+def folder_digest(*places: Path) -> str:
+    """Return a digest of all files in folders, without compiled files, shipped models and proofs."""
     content = hashlib.sha256()
-    for place in (Path(__file__).parents[1], shipped("models")):
+    for place in places:
         for folder, folders, names in os.walk(place):
             folders[:] = sorted(x for x in folders if x not in ("__pycache__", "models", "proofs"))
             for name in sorted(x for x in names if not x.endswith((".pyc", ".pyo"))):

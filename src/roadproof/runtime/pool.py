@@ -1,57 +1,69 @@
-"""Work for several processes, its results as they come, and word of how far it is."""
+"""Parallel execution of jobs with progress reports; results come as jobs finish."""
+
+from __future__ import annotations
 
 import os
 from collections.abc import Callable, Generator, Sequence
-from typing import TypeAlias, TypeVar
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
-from roadproof.errors import LostError
-from roadproof.reasons import Reason
-from roadproof.runtime.executors import Jobs, hands_of
+from roadproof.errors import LostWorkError
+from roadproof.runtime.executors import Jobs, executor_for
+
+if TYPE_CHECKING:
+    from roadproof.reasons import Reason
 
 Job = TypeVar("Job")
 Answer = TypeVar("Answer")
 
-# Told of so many jobs that are done, of so many in all, and of the word for many of them.
+# Called with the number of finished jobs, their total, and the word for many jobs.
 Progress: TypeAlias = Callable[[int, int, str], None]
-# Told what is said in any case, in a line.
+# Called with a line of output that is printed even without progress.
 Say: TypeAlias = Callable[[str], None]
 
 
 def work(
     function: Callable[[Job], Answer],
     jobs: Sequence[Job],
-    hands: Jobs,
+    executor: Jobs,
     lost: Callable[[Job, Reason], Answer] | None = None,
     progress: Progress | None = None,
     what: str = "jobs",
     known: int = 0,
     fresh: bool = False,
 ) -> Generator[tuple[int, Answer], None, None]:
-    """``function`` of every job with its place, in the order in which they are done.
+    """Yield the index of every job and ``function(job)``, as jobs finish.
 
-    ``hands``: who does them; ``known``: how many jobs more needed no work. ``lost`` makes the
-    answer, a doubt, of a job whose process ended each time (see ``workers``) out of the reason; without it
-    ``LostError`` is raised when all others are done. The iterator is to be used up or closed. An error
-    in a job, or an interruption, ends the others.
+    Close the iterator, or use it up. An error in a job, or an interruption, ends the other jobs.
+
+    Args:
+        executor: Runs the jobs: a number of processes, or an ``Executor``. One job runs in this process.
+        lost: Makes an answer (UNKNOWN) for a job whose process died at each attempt, from the reason.
+        progress: Called with the number of finished jobs, their total, and ``what``.
+        what: The word for many jobs.
+        known: The number of further jobs that needed no work.
+        fresh: Processes share nothing with this one.
+
+    Raises:
+        LostWorkError: Without ``lost``, when all other jobs are finished.
     """
-    who = hands_of(hands)
+    resolved = executor_for(executor)
     if len(jobs) > 1:
-        from roadproof.runtime.dispatch import answers_of
+        from roadproof.runtime.dispatch import run_jobs
         from roadproof.runtime.executors import LostJob
         from roadproof.runtime.worker import is_worker
-    # A fresh process imports the script of the user again, who asks for none with one job at a time.
-    is_alone = fresh and who.processes == 1 and who.cluster is None
+    # A fresh process imports the user's script again; jobs=1 avoids that.
+    is_alone = fresh and resolved.processes == 1 and resolved.cluster is None
     if len(jobs) <= 1 or is_worker() or is_alone:
         yield from enumerate(map(function, jobs))
         return
     total = known + len(jobs)
     reasons: list[str] = []
-    told = progress or _nobody
-    told(known, total, what)
-    found = answers_of(function, jobs, who, fresh)
+    report = progress or _nobody
+    report(known, total, what)
+    answers = run_jobs(function, jobs, resolved, fresh)
     try:
-        for done, (place, answer) in enumerate(found, known + 1):
-            told(done, total, what)
+        for done, (place, answer) in enumerate(answers, known + 1):
+            report(done, total, what)
             if not isinstance(answer, LostJob):
                 yield place, answer
             elif lost is not None:
@@ -59,31 +71,31 @@ def work(
             else:
                 reasons.append(f"{place + 1} of {len(jobs)} {what}: {answer.reason}")
     finally:
-        found.close()
+        answers.close()
     if reasons:
-        raise LostError("left out: " + "; ".join(reasons))
+        raise LostWorkError("left out: " + "; ".join(reasons))
 
 
 def in_order(answers: Generator[tuple[int, Answer], None, None]) -> Generator[Answer, None, None]:
-    """The answers of ``work`` in the order of their jobs; those that wait for a lost one come last."""
+    """Yield the answers of ``work`` in the order of their jobs; those after a lost job come last."""
     early: dict[int, Answer] = {}
     place = 0
     try:
-        for found, answer in answers:
-            early[found] = answer
+        for answer_place, answer in answers:
+            early[answer_place] = answer
             while place in early:
                 yield early.pop(place)
                 place += 1
-    except LostError:
-        yield from (early[found] for found in sorted(early))
+    except LostWorkError:
+        yield from (early[answer_place] for answer_place in sorted(early))
         raise
     finally:
         answers.close()
 
 
-def count_workers(jobs: Sequence[object], hands: Jobs) -> int:
-    """How many processes here the jobs are given. Raises ``UsageError`` where none would be left."""
-    return min(hands_of(hands).processes or os.cpu_count() or 1, len(jobs))
+def count_workers(jobs: Sequence[object], executor: Jobs) -> int:
+    """Return how many local processes work on the jobs. Raises ``UsageError`` if that would be none."""
+    return min(executor_for(executor).processes or os.cpu_count() or 1, len(jobs))
 
 
 def _nobody(done: int, total: int, what: str) -> None:

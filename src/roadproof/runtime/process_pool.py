@@ -1,4 +1,4 @@
-"""Processes for many jobs, of which one that dies costs at most its own job."""
+"""A pool of local processes that survives the death of any of them."""
 
 import os
 import sys
@@ -10,9 +10,9 @@ from multiprocessing.connection import wait
 from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 from roadproof.errors import UsageError
-from roadproof.reasons import Why
-from roadproof.runtime.executors import LostJob, try_again
-from roadproof.runtime.progress import Stage, is_heard, pass_on
+from roadproof.reasons import ReasonKind
+from roadproof.runtime.executors import LostJob, run_with_retries
+from roadproof.runtime.progress import Stage, forward, has_listener
 from roadproof.runtime.worker import GRACE, DeadWorkerError, Worker, dismiss
 
 Job = TypeVar("Job")
@@ -20,39 +20,42 @@ Answer = TypeVar("Answer")
 
 
 @runtime_checkable
-class Kindred(Protocol):
-    """A job of which a worker that did another of its kin may have done a part."""
+class HasAffinity(Protocol):
+    """A job that is faster on a worker that has done a related job."""
 
     @property
-    def kin(self) -> Hashable:
-        """What is equal for jobs that have much in common."""
+    def affinity(self) -> Hashable:
+        """A value that is equal for related jobs."""
 
 
-def answers_of(
+def run_jobs(
     function: Callable[[Job], Answer], jobs: Sequence[Job], most: int | None = None, fresh: bool = False
 ) -> Generator[tuple[int, Answer | LostJob], None, None]:
-    """``function`` of every job, each with its place in ``jobs``, in the order in which they are done.
+    """Yield the index and the answer of every job, as jobs finish.
 
-    They are given out in order, but kin to one worker as far as others have work. A job whose process dies is
-    tried again when the others are done. ``fresh``: as for ``Worker``. The iterator is to be used up or
-    closed. An error that a job raises is raised here, and ends the others. ``most``: processes at once, None
-    for one a core.
+    Jobs start in order, but related jobs go to one worker while there is enough other work. A job whose
+    process dies is tried again when the others are done. An error that a job raises is raised here, and ends
+    the others. Close the iterator, or use it up.
+
+    Args:
+        most: The largest number of processes, None for one a core.
+        fresh: As for ``Worker``.
     """
     is_copy = not fresh and sys.platform == "linux"
-    does: Callable[[Any], Answer] = _AtPlace(function, jobs) if is_copy else function
-    start = partial(Worker, does, fresh, is_heard())
-    asked: Sequence[object] = range(len(jobs)) if is_copy else jobs
+    task: Callable[[Any], Answer] = _JobAtPlace(function, jobs) if is_copy else function
+    start = partial(Worker, task, fresh, has_listener())
+    requests: Sequence[object] = range(len(jobs)) if is_copy else jobs
 
     def attempt(places: Sequence[int], died: dict[int, str]) -> Generator[tuple[int, Answer], None, None]:
         waiting = _Waiting(jobs, places)
-        return _try_once(start, asked, waiting, min(most or os.cpu_count() or 1, len(places)), died)
+        return _run_once(start, requests, waiting, min(most or os.cpu_count() or 1, len(places)), died)
 
-    yield from try_again(attempt, len(jobs), Why.PROCESS)
+    yield from run_with_retries(attempt, len(jobs), ReasonKind.PROCESS)
 
 
 @dataclass(frozen=True)
-class _AtPlace(Generic[Job, Answer]):
-    """Does the job at a place. A process that is a copy of this one has the jobs, so none is sent."""
+class _JobAtPlace(Generic[Job, Answer]):
+    """A function that does the job at an index; a forked process has the jobs already, so none is sent."""
 
     function: Callable[[Job], Answer]
     jobs: Sequence[Job]
@@ -61,40 +64,40 @@ class _AtPlace(Generic[Job, Answer]):
         return self.function(self.jobs[place])
 
 
-def _try_once(
+def _run_once(
     start: Callable[[], Worker],
     jobs: Sequence[object],
     waiting: "_Waiting",
     processes: int,
     died: dict[int, str],
 ) -> Generator[tuple[int, Any], None, None]:
-    """The answers at places that are waiting; where a process ended instead, ``died`` says by what.
+    """Yield the answers at the waiting indices; if a process dies, ``died`` gets the index and the cause.
 
-    ``jobs``: what a worker is asked at each place.
+    ``jobs``: the request that is sent to a worker for each index.
     """
-    team: dict[Worker, int | None] = {}  # the place of the job that each is at
+    team: dict[Worker, int | None] = {}  # the index of each worker's current job
     try:
         while waiting or any(place is not None for place in team.values()):
             while waiting and (free := _free(team, processes, start)) is not None:
                 place = waiting.pop(free)
                 team[free] = place
-                free.ask(jobs[place])
+                free.send_job(jobs[place])
             busy = {worker.connection: (worker, at) for worker, at in team.items() if at is not None}
             for connection in wait(list(busy)):
                 worker, place = busy[connection]  # type: ignore[index]
                 try:
-                    said = worker.hear()
+                    message = worker.receive()
                 except DeadWorkerError as death:
                     died[place] = str(death)
                     del team[worker]
                     continue
-                if isinstance(said, Stage):
-                    pass_on(said)
-                elif said.error is not None:
-                    raise said.error
+                if isinstance(message, Stage):
+                    forward(message)
+                elif message.error is not None:
+                    raise message.error
                 else:
                     team[worker] = None
-                    yield place, said.answer
+                    yield place, message.answer
     finally:
         dismiss([worker.process for worker in team], GRACE)
         for worker in team:
@@ -102,31 +105,31 @@ def _try_once(
 
 
 class _Waiting:
-    """The places of jobs that no worker was given yet."""
+    """The indices of jobs that no worker has started."""
 
     def __init__(self, jobs: Sequence[object], places: Sequence[int]) -> None:
-        self.kin = {x: job.kin for x in places if isinstance(job := jobs[x], Kindred)}
+        self.affinity = {x: job.affinity for x in places if isinstance(job := jobs[x], HasAffinity)}
         self.places = deque(places)
-        self.last: dict[object, Hashable] = {}  # of what kin the last job of each worker was
+        self.last: dict[object, Hashable] = {}  # the affinity of the last job of each worker
 
     def __bool__(self) -> bool:
         return bool(self.places)
 
     def pop(self, worker: object) -> int:
-        """The first of the kin that a worker did last, else the first of a kin that no worker did last."""
-        if not self.kin:
+        """Return the next index for a worker: a related job, else one unrelated to any worker's last job."""
+        if not self.affinity:
             return self.places.popleft()
-        taken, mine = {*self.last.values()}, self.last.get(worker)
-        alike = (x for x in self.places if worker in self.last and self.kin.get(x) == mine)
-        new = (x for x in self.places if self.kin.get(x) not in taken)
-        place = next(alike, next(new, self.places[0]))
+        claimed, last_affinity = {*self.last.values()}, self.last.get(worker)
+        related = (x for x in self.places if worker in self.last and self.affinity.get(x) == last_affinity)
+        unclaimed = (x for x in self.places if self.affinity.get(x) not in claimed)
+        place = next(related, next(unclaimed, self.places[0]))
         self.places.remove(place)
-        self.last[worker] = self.kin.get(place)
+        self.last[worker] = self.affinity.get(place)
         return place
 
 
 def _free(team: dict[Worker, int | None], processes: int, start: Callable[[], Worker]) -> Worker | None:
-    """A worker without a job, a new one if there may be one more, or None."""
+    """Return an idle worker, a new one if the limit allows it, or None."""
     for worker in [worker for worker, place in team.items() if place is None]:
         if worker.process.is_alive():
             return worker
@@ -134,10 +137,10 @@ def _free(team: dict[Worker, int | None], processes: int, start: Callable[[], Wo
     if len(team) >= processes:
         return None
     try:
-        made = start()
+        new_worker = start()
     except OSError as error:
         if team:
             return None
         raise UsageError(f"cannot start processes: {error.strerror}; use fewer with --jobs") from None
-    team[made] = None
-    return made
+    team[new_worker] = None
+    return new_worker

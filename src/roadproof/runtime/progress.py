@@ -1,7 +1,8 @@
-"""What a question is at, for whoever wants to know: told whenever a stage begins.
+"""Progress of a question: a listener is called at the beginning of every stage.
 
-Whoever listens ends the question by raising ``Cancelled``, or anything else. What workers are at is told by
-the process that they work for, so that there it ends them too, whatever they are busy with.
+The listener ends the question by raising ``Cancelled``, or anything else. The stages of a worker process are
+reported in the process that started it, so that an exception there also ends the worker, even inside a
+solver.
 """
 
 import time
@@ -16,9 +17,10 @@ from roadproof.runtime.records import dataclass
 
 @dataclass(frozen=True)
 class Stage:
-    """``name``: prove, encode, solve, shape, judge, refute or explain; ``told``: on which grid, and so on.
+    """A stage of a question that has begun.
 
-    ``of``: of which question or part of one; ``seconds`` since somebody listens.
+    ``name``: prove, encode, solve, shape, judge, refute or explain. ``told``: details, such as the grid.
+    ``of``: the question, or the part of one. ``seconds``: time since the listener was installed.
     """
 
     name: str
@@ -35,7 +37,7 @@ Listener: TypeAlias = Callable[[Stage], object]
 
 
 class Cancelled(RoadproofError):
-    """Whoever listened to the stages of a question wanted no more of it."""
+    """The exception by which a listener ends a question."""
 
     exit_code = 130
 
@@ -46,7 +48,7 @@ _about: ContextVar[str] = ContextVar("about", default="")
 
 @contextmanager
 def listening(listener: Listener | None) -> Iterator[None]:
-    """``listener`` is told of all stages that begin inside; where it is None things stay as they are."""
+    """Install ``listener`` for all stages that begin inside; None changes nothing."""
     if listener is None:
         yield
         return
@@ -59,7 +61,7 @@ def listening(listener: Listener | None) -> Iterator[None]:
 
 @contextmanager
 def about(question: str) -> Iterator[None]:
-    """Stages inside are of ``question``, unless they are of something narrower that was said before."""
+    """Make stages inside name ``question``, unless an outer ``about`` named one already."""
     token = _about.set(_about.get() or question)
     try:
         yield
@@ -67,19 +69,19 @@ def about(question: str) -> Iterator[None]:
         _about.reset(token)
 
 
-def begin(name: str, told: str = "") -> None:
-    """A stage begins now. Raises what the listener raises."""
-    pass_on(Stage(name, told, _about.get(), 0.0))
+def report_stage(name: str, detail: str = "") -> None:
+    """Report that a stage begins. Raises what the listener raises."""
+    forward(Stage(name, detail, _about.get(), 0.0))
 
 
-def is_heard() -> bool:
-    """Whether anybody listens."""
+def has_listener() -> bool:
+    """Return whether a listener is installed."""
     return _listener.get() is not None
 
 
-def pass_on(stage: Stage) -> None:
-    """Tell of a stage, which may be one that another process has begun, at the time that it is here."""
-    heard = _listener.get()
-    if heard is not None:
-        listener, since = heard
+def forward(stage: Stage) -> None:
+    """Report a stage, perhaps of another process, with the time since our listener was installed."""
+    current = _listener.get()
+    if current is not None:
+        listener, since = current
         listener(Stage(stage.name, stage.told, stage.of, time.monotonic() - since))

@@ -1,16 +1,16 @@
-"""How long an answer took, as it is told and kept: to a tenth of a millisecond, rounded once.
+"""The duration of an answer, rounded once to a tenth of a millisecond.
 
-A figure that is rounded for a file and again for a page may be told differently when it is read back.
+A duration that is rounded for a file, and again for a page, could differ when it is read back.
 """
 
 import time
 
 
 def now() -> float:
-    """An instant to count from, in seconds."""
+    """Return an instant to count from, in seconds."""
     return time.monotonic()
 
 
-def since(begun: float) -> float:
-    """Seconds since ``begun``, an instant that ``now`` gave."""
-    return round(time.monotonic() - begun, 4)
+def seconds_since(start: float) -> float:
+    """Return the seconds since ``start``, an instant that ``now`` gave."""
+    return round(time.monotonic() - start, 4)

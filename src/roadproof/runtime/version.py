@@ -2,7 +2,7 @@
 
 VERSION = "1.0.0rc1"
 ANSWERS = "0.1.0"
-"""The first version whose answers are those of this one: shipped and kept answers since then are taken.
+"""The first version whose answers are still valid: shipped and cached answers since then are used.
 
-Raise it to ``VERSION`` with every change after which a question may have another answer.
+Raise it to ``VERSION`` with every change that can change the answer to a question.
 """

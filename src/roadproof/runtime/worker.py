@@ -1,8 +1,8 @@
-"""A process that works for another: how it begins, how it is asked and heard, and how it ends.
+"""A worker process: how it starts, receives jobs, replies, and ends.
 
-Pools of processes, the studio and the supervisor of a command all use it. A process ends when the one that
-has started it ends, in whatever way. It leaves Ctrl-C to that one, since z3 would take it as its own. Asked
-to end by SIGTERM it has a moment to remove half-written files.
+Process pools, the studio and the supervisor of a command use it. A process ends when its parent ends, for
+whatever reason. It ignores Ctrl-C, which z3 would handle itself, and leaves it to its parent. After SIGTERM
+it has a moment to remove half-written files.
 """
 
 import contextlib
@@ -15,7 +15,6 @@ import time
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from roadproof.runtime.memory import collect_rarely
 from roadproof.runtime.progress import Stage, listening
 from roadproof.runtime.records import dataclass
 
@@ -25,17 +24,19 @@ if TYPE_CHECKING:
 
 OUTSIDE = "from outside or for want of memory"
 GRACE = 0.5  # seconds that a worker has to remove half-written files when it is dismissed
+_THRESHOLDS = 5000, 20, 50  # of generations of Python's garbage collector
 _DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 
 @dataclass
 class Fork:
-    """A child that ``os.fork`` has made, with what is needed of a process of ``multiprocessing``."""
+    """A child process made by ``os.fork``, with the used methods of a ``multiprocessing`` process."""
 
     pid: int
     exitcode: int | None = None
 
     def join(self, timeout: float | None = None) -> None:
+        """Wait until the process has ended, at most ``timeout`` seconds."""
         latest = None if timeout is None else time.monotonic() + timeout
         while self.exitcode is None:
             gone, status = os.waitpid(self.pid, 0 if latest is None else os.WNOHANG)
@@ -66,15 +67,20 @@ def dismiss(processes: "Sequence[Fork | BaseProcess]", grace: float) -> None:
             process.join()
 
 
-def ended_by(code: int) -> str:
-    """What ended a process, from its exit code: ``SIGKILL``, or ``exited with 3``."""
+def describe_exit(code: int) -> str:
+    """Return the cause of a process's end from its exit code: ``SIGKILL``, or ``exited with 3``."""
     return signal.Signals(-code).name if code < 0 else f"exited with {code}"
 
 
-def work_for(parent: int, terminate: Callable[[int, object], object]) -> None:
-    """In a child of ``parent``, before it does anything: it ends with its parent, and hears only SIGTERM.
+def collect_rarely() -> None:
+    """Make Python look for cycles less often: trees of formulas have none, and a look walks through them."""
+    gc.set_threshold(*_THRESHOLDS)
 
-    ``terminate`` is what it does then.
+
+def become_child_of(parent: int, terminate: Callable[[int, object], object]) -> None:
+    """Make this process end with ``parent`` and react to SIGTERM alone; call it before anything else.
+
+    ``terminate``: the handler of SIGTERM.
     """
     collect_rarely()
     signal.signal(signal.SIGTERM, terminate)
@@ -99,69 +105,71 @@ def _look_for(parent: int) -> None:
 
 @dataclass(frozen=True)
 class Reply:
-    """The last word of a worker about a job: its answer, or the error that it has raised."""
+    """The reply of a worker to a job: its answer, or the error that it has raised."""
 
     answer: Any = None
     error: Exception | None = None
 
 
 class DeadWorkerError(Exception):
-    """A worker has ended; the message says by what."""
+    """The error for a worker that has ended; the message names the cause."""
 
 
 class Worker:
-    """A process that does one job after another: ``function`` of each.
+    """A process that applies ``function`` to one job after another.
 
     ``fresh``: it shares nothing with this process, for libraries whose threads hold locks. ``heard``: it
-    tells the stages of its jobs. Raises ``OSError`` where no process can be started.
+    reports the stages of its jobs. Raises ``OSError`` if no process can be started.
     """
 
-    def __init__(self, function: Callable[[Any], object], fresh: bool = False, heard: bool = True) -> None:
-        import multiprocessing  # here, because --help need not wait for it
+    def __init__(
+        self, function: Callable[[Any], object], fresh: bool = False, reporting: bool = True
+    ) -> None:
+        import multiprocessing  # here, so that --help is fast
 
         context = multiprocessing.get_context("spawn" if fresh or sys.platform != "linux" else "fork")
         self.connection, other = context.Pipe()
         self.process = context.Process(  # type: ignore[attr-defined]
-            target=_serve, args=(other, function, os.getpid(), heard), daemon=True
+            target=_serve, args=(other, function, os.getpid(), reporting), daemon=True
         )
         try:
             self.process.start()
         finally:
             other.close()
 
-    def ask(self, job: object) -> None:
-        """Give it a job. It may have died, which is told where its reply is heard."""
+    def send_job(self, job: object) -> None:
+        """Send a job. If the process has died, ``receive`` raises the error."""
         with contextlib.suppress(OSError):
             self.connection.send(job)
 
-    def hear(self) -> Stage | Reply:
-        """Wait for its next word. Raises ``DeadWorkerError``."""
+    def receive(self) -> Stage | Reply:
+        """Wait for a stage or the reply. Raises ``DeadWorkerError``."""
         try:
-            said: Stage | Reply = self.connection.recv()
+            message: Stage | Reply = self.connection.recv()
         except (EOFError, OSError):
             raise DeadWorkerError(self._cause_of_death()) from None
-        return said
+        return message
 
     def _cause_of_death(self) -> str:
         self.process.join(GRACE)
         code = self.process.exitcode
         if code is None:
             return "its pipe was closed"
-        return f"{ended_by(code)} ({OUTSIDE})" if code == -signal.SIGKILL else ended_by(code)
+        return f"{describe_exit(code)} ({OUTSIDE})" if code == -signal.SIGKILL else describe_exit(code)
 
 
-def _serve(connection: "Connection", function: Callable[[Any], object], parent: int, heard: bool) -> None:
-    """What a worker does all its life."""
-    work_for(parent, lambda number, frame: sys.exit(128 + number))
+def _serve(connection: "Connection", function: Callable[[Any], object], parent: int, reporting: bool) -> None:
+    """Run jobs until the connection closes; the main function of a worker."""
+    become_child_of(parent, lambda number, frame: sys.exit(128 + number))
     sys.unraisablehook = _end_soon
-    gc.freeze()  # what was there before the fork stays, and is not walked through at each collection
+    gc.freeze()  # objects from before the fork are excluded from garbage collection
     while True:
         try:
             job = connection.recv()
         except (EOFError, OSError):
             return
         try:
-            with listening(connection.send if heard else _nobody):
+            with listening(connection.send if reporting else _nobody):
                 reply = Reply(function(job))
         except Exception as error:
             reply = Reply(error=error)
@@ -169,13 +177,13 @@ def _serve(connection: "Connection", function: Callable[[Any], object], parent: 
             connection.send(reply)
         except OSError:
             return
-        except Exception as error:  # what cannot be pickled
-            told = f"{type(error).__name__}: {error}; of {reply.error or reply.answer!r:.200}"
-            connection.send(Reply(error=RuntimeError(told)))
+        except Exception as error:  # an answer that cannot be pickled
+            message = f"{type(error).__name__}: {error}; of {reply.error or reply.answer!r:.200}"
+            connection.send(Reply(error=RuntimeError(message)))
 
 
 def _end_soon(ignored: Any) -> None:
-    """An exit that came while an object was removed is lost there: ask for it again a moment later."""
+    """Repeat an exit request that was lost because it came while an object was removed."""
     if not isinstance(ignored.exc_value, SystemExit):
         sys.__unraisablehook__(ignored)
     elif hasattr(signal, "setitimer"):
@@ -184,20 +192,20 @@ def _end_soon(ignored: Any) -> None:
 
 
 def _nobody(stage: Stage) -> None:
-    """Nobody listens; the listener of the process that this one is a copy of is no longer there."""
+    """Ignore a stage; a forked process must not call the listener that it has inherited."""
 
 
 _ends_here = False
 
 
-def end_here() -> None:
-    """This process works for another, whoever started it: what it is asked is not divided again."""
+def mark_as_worker() -> None:
+    """Mark this process as a worker, so that its jobs start no further processes."""
     global _ends_here
     _ends_here = True
 
 
 def is_worker() -> bool:
-    """Whether this process is one of several that work for another."""
+    """Return whether this process works for another one."""
     import multiprocessing
 
     return _ends_here or multiprocessing.parent_process() is not None

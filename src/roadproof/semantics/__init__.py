@@ -1,4 +1,4 @@
-"""What formulas mean on drives: exactly in dense time, and on samples.
+"""The meaning of formulas on drives: exact in dense time, and on samples.
 
-Imports library, world and logic. It shares no code with the engines, whose answers it judges.
+Imports library, world and logic. It shares no code with the engines, whose drives it judges.
 """

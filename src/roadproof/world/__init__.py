@@ -1,4 +1,4 @@
-"""Signals, units, vehicles, roads, drives and their motion.
+"""The physical world: signals, units, vehicles, roads, drives and their motion.
 
 Imports neither logic nor library.
 """

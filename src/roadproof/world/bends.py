@@ -1,7 +1,7 @@
-"""What a vehicle can do on a bend: the road's curvature κ adds v_lon²·κ to its acceleration across.
+"""Limits of a vehicle on a bend, where the road's curvature κ adds v_lon²·κ to the lateral acceleration.
 
-On a road with a reference line, the acceleration of a vehicle to its left in the plane is v_lon²·κ + a_lat
-at d = 0; elsewhere the factor is at most 1 + |κ·d| (``length_error``). Its absolute value is at most
+On a road with a reference line, the acceleration of a vehicle to its left in the plane is v_lon²·κ + a_lat at
+d = 0; elsewhere the factor is at most 1 + |κ·d| (``length_error``). Its absolute value is at most
 ``Vehicle.a_bend``.
 """
 
@@ -17,10 +17,10 @@ _HUNDREDTHS = 100
 
 
 def on_bends(vehicle: Vehicle, line: ReferenceLine | None) -> Vehicle:
-    """``vehicle`` as a search has it on a road: so slow that it can have any ``a_lat`` of its range.
+    """Return ``vehicle`` with speeds and ``a_lat`` limited so that all combinations are possible on bends.
 
-    That is sufficient, and the name says it, as a search without result is about such vehicles only. Raises
-    ``UsageError`` where the vehicle would have to be slower than it can.
+    This is sufficient, not necessary; the vehicle's name states it, since NONE-WITHIN is about such vehicles
+    only. Raises ``UsageError`` if the vehicle cannot drive that slowly.
     """
     bends = () if line is None else line.bends()
     sharpest = max((x.greatest for x in bends), default=Fraction(0))
@@ -39,8 +39,8 @@ def on_bends(vehicle: Vehicle, line: ReferenceLine | None) -> Vehicle:
             "or a vehicle with another a_bend"
         )
     rule = f"|v_lon²·κ + a_lat| <= {vehicle.a_bend} m/s²"
-    told = f"{vehicle.name} on bends of radius {radius} or more ({rule})"
+    name = f"{vehicle.name} on bends of radius {radius} or more ({rule})"
     fast = min(fast, most)
     cruise = max(slow, vehicle.cruise[0]), min(fast, vehicle.cruise[1])
     cruise = cruise if cruise[0] < cruise[1] else (slow, fast)
-    return replace(vehicle, name=told, v_lon=(slow, fast), a_lat=a_lat, cruise=cruise)
+    return replace(vehicle, name=name, v_lon=(slow, fast), a_lat=a_lat, cruise=cruise)

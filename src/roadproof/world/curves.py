@@ -1,7 +1,7 @@
 """Curves in the plane by their length: line, arc, spiral, cubic, parametric cubic, polyline.
 
-Each begins at (0, 0) with heading 0. Shapes and coefficients are those of ASAM OpenDRIVE 1.8, section 9. The
-place on a cubic is found by arc length, so that the curve has the length that its file says; where a
+Each begins at (0, 0) with heading 0. Shapes and coefficients are those of ASAM OpenDRIVE 1.8, section 9. A
+point on a cubic is found by arc length, so that the curve has the length that its file states. If a
 parametric cubic is longer or shorter than that, all lengths along it are scaled.
 """
 
@@ -11,12 +11,13 @@ from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import pairwise
-from typing import TypeAlias
+from typing import Literal, TypeAlias, assert_never
 
 from roadproof.runtime.records import dataclass
 
 Coefficients: TypeAlias = tuple[Fraction, Fraction, Fraction, Fraction]
 Range: TypeAlias = tuple[float, float]
+Order: TypeAlias = Literal[0, 1, 2]
 
 _NODES = (
     (0.1834346424956498, 0.3626837833783620),
@@ -26,11 +27,11 @@ _NODES = (
 )
 """Gauss-Legendre quadrature with eight nodes: the positive ones and their weights."""
 _TURN = 0.25
-"""Radians: a spiral is integrated in parts that turn no further."""
+"""The largest turn, in radians, of the parts in which a spiral is integrated."""
 _PARTS = 32
 """Parts of a cubic for its arc length and the bounds of its curvature."""
 _ROUNDING = 1e-9
-"""Bounds of a curvature are wider by that share, as floats are rounded."""
+"""The share by which bounds of a curvature are widened, because floats are rounded."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +47,8 @@ class Pose:
 class Bend:
     """Bounds of the curvature (1/m, positive to the left) on a part of a curve.
 
-    At ``begin`` + t·(``end`` - ``begin``), 0 <= t <= 1, it lies between the values that go linearly from
-    ``low[0]`` to ``low[1]`` and from ``high[0]`` to ``high[1]``. ``begin`` and ``end`` in m.
+    At ``begin`` + t·(``end`` - ``begin``), 0 <= t <= 1, the curvature lies between two linear functions: one
+    from ``low[0]`` to ``low[1]``, one from ``high[0]`` to ``high[1]``. ``begin`` and ``end`` in m.
     """
 
     begin: Fraction
@@ -69,17 +70,18 @@ class Line:
         return Pose(s, 0.0, 0.0)
 
     def bends(self, length: Fraction) -> Iterator[Bend]:
-        yield Bend(Fraction(0), length, *_same(Fraction(0), Fraction(0)))
+        yield Bend(Fraction(0), length, *_exact(Fraction(0), Fraction(0)))
 
 
 @dataclass(frozen=True)
 class Spiral:
-    """A clothoid: its curvature goes linearly from ``begin`` to ``end`` (1/m). Equal ones make an arc."""
+    """A clothoid: its curvature goes linearly from ``begin`` to ``end`` (1/m). Equal values make an arc."""
 
     begin: Fraction
     end: Fraction
 
     def pose(self, s: float, length: Fraction) -> Pose:
+        """Return the pose ``s`` m along a spiral of ``length`` m, by numerical integration."""
         begin, growth = float(self.begin), float((self.end - self.begin) / length)
 
         def heading(u: float) -> float:
@@ -87,12 +89,13 @@ class Spiral:
 
         turning = abs(s) * max(abs(begin), abs(begin + growth * s))
         parts = 1 + int(turning / _TURN)
-        x = sum(_integral(lambda u: math.cos(heading(u)), a, b) for a, b in _divided(s, parts))
-        y = sum(_integral(lambda u: math.sin(heading(u)), a, b) for a, b in _divided(s, parts))
+        x = sum(_integral(lambda u: math.cos(heading(u)), a, b) for a, b in _subdivide(s, parts))
+        y = sum(_integral(lambda u: math.sin(heading(u)), a, b) for a, b in _subdivide(s, parts))
         return Pose(x, y, heading(s))
 
     def bends(self, length: Fraction) -> Iterator[Bend]:
-        yield Bend(Fraction(0), length, *_same(self.begin, self.end))
+        """Yield the curvature, which is known exactly."""
+        yield Bend(Fraction(0), length, *_exact(self.begin, self.end))
 
 
 @dataclass(frozen=True)
@@ -104,11 +107,13 @@ class Cubic:
     last: Fraction | None
 
     def pose(self, s: float, length: Fraction) -> Pose:
-        p = _parameter(self, length, s)
+        """Return the pose ``s`` m along a cubic of ``length`` m."""
+        p = _parameter_at(self, length, s)
         du, dv = _value(self.u, p, 1), _value(self.v, p, 1)
         return Pose(_value(self.u, p), _value(self.v, p), math.atan2(dv, du))
 
     def bends(self, length: Fraction) -> Iterator[Bend]:
+        """Yield constant bounds of the curvature for each of ``_PARTS`` parts."""
         parameters, lengths = _table(self, length)
         for (p, q), (a, b) in zip(pairwise(parameters), pairwise(lengths), strict=True):
             low, high = _curvature(self, (p, q))
@@ -120,17 +125,17 @@ class Cubic:
 
 @dataclass(frozen=True)
 class Polyline:
-    """Straight lines between points (m), the first at (0, 0). Their directions change evenly on each.
+    """Straight lines between points (m), the first at (0, 0); the direction changes linearly along each.
 
-    The direction at a point is in the middle of those before and after. Where the line is a sampled curve,
-    it is at most h²·κ/8 from the curve, h between two points.
+    The direction at a point is the mean of those before and after it. If the line is a sampled curve, it is
+    at most h²·κ/8 from the curve, for points h apart.
     """
 
     points: tuple[tuple[Fraction, Fraction], ...]
 
     @cached_property
     def measured(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Lengths up to the points (m), and the directions there (rad), which do not jump by a turn."""
+        """Lengths up to the points (m), and the directions there (rad), which do not jump by a full turn."""
         places, ways = [0.0], list[float]()
         for (x, y), (x1, y1) in pairwise(self.places):
             places.append(places[-1] + math.hypot(x1 - x, y1 - y))
@@ -141,10 +146,11 @@ class Polyline:
 
     @cached_property
     def places(self) -> Sequence[tuple[float, float]]:
-        """The points, rounded."""
+        """The points as floats."""
         return [(float(x), float(y)) for x, y in self.points]
 
     def pose(self, s: float, _: Fraction) -> Pose:
+        """Return the pose ``s`` m along the line, extended straight beyond its ends."""
         places, headings = self.measured
         k = min(max(bisect_right(places, s) - 1, 0), len(places) - 2)
         share = (s - places[k]) / (places[k + 1] - places[k])
@@ -153,28 +159,29 @@ class Polyline:
         return Pose(x + share * (x1 - x), y + share * (y1 - y), turned)
 
     def bends(self, length: Fraction) -> Iterator[Bend]:
+        """Yield the change of direction per metre for each of the straight lines."""
         places, headings = self.measured
         scale = float(length) / places[-1]
         for (a, b), (before, after) in zip(pairwise(places), pairwise(headings), strict=True):
             curvature = Fraction((after - before) / (b - a))
             end = length if b == places[-1] else Fraction(b * scale)
-            yield Bend(Fraction(a * scale), end, *_same(curvature, curvature))
+            yield Bend(Fraction(a * scale), end, *_exact(curvature, curvature))
 
 
 Curve: TypeAlias = Line | Spiral | Cubic | Polyline
 
 
 def length_of(line: Polyline) -> float:
-    """Of all its straight lines together (m)."""
+    """Return the length of all straight lines together (m)."""
     return line.measured[0][-1]
 
 
-def _same(begin: Fraction, end: Fraction) -> tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]:
-    """Both bounds where the curvature is known."""
+def _exact(begin: Fraction, end: Fraction) -> tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]:
+    """Return equal lower and upper bounds, for a curvature that is known."""
     return (begin, end), (begin, end)
 
 
-def _divided(end: float, parts: int) -> Iterator[Range]:
+def _subdivide(end: float, parts: int) -> Iterator[Range]:
     return pairwise([end * k / parts for k in range(parts + 1)])
 
 
@@ -183,16 +190,18 @@ def _integral(function: Callable[[float], float], begin: float, end: float) -> f
     return half * sum(w * (function(middle - half * x) + function(middle + half * x)) for x, w in _NODES)
 
 
-def _value(coefficients: Coefficients, p: float, order: int = 0) -> float:
-    """A cubic or its first or second derivative."""
+def _value(coefficients: Coefficients, p: float, order: Order = 0) -> float:
+    """Return the value of a cubic, or of its first or second derivative."""
     a, b, c, d = map(float, coefficients)
     match order:
         case 0:
             return a + p * (b + p * (c + p * d))
         case 1:
             return b + p * (2 * c + 3 * p * d)
-        case _:
+        case 2:
             return 2 * c + 6 * p * d
+        case _:
+            assert_never(order)
 
 
 def _speed(curve: Cubic, p: float) -> float:
@@ -201,31 +210,31 @@ def _speed(curve: Cubic, p: float) -> float:
 
 @lru_cache(maxsize=4096)
 def _table(curve: Cubic, length: Fraction) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Parameters and the lengths (m) up to them, the last one ``length``."""
-    wanted = float(length)
-    last = _end(curve, wanted) if curve.last is None else float(curve.last)
+    """Return parameters, and the lengths (m) up to them, the last one ``length``."""
+    total = float(length)
+    last = _parameter_at_end(curve, total) if curve.last is None else float(curve.last)
     parameters = tuple(last * k / _PARTS for k in range(_PARTS + 1))
     lengths = [0.0]
     for p, q in pairwise(parameters):
         lengths.append(lengths[-1] + _integral(lambda x: _speed(curve, x), p, q))
     if lengths[-1] <= 0:
         raise ValueError("a cubic of length 0")
-    return parameters, (*(x * wanted / lengths[-1] for x in lengths[:-1]), wanted)
+    return parameters, (*(x * total / lengths[-1] for x in lengths[:-1]), total)
 
 
-def _end(curve: Cubic, length: float) -> float:
-    """The parameter of a graph v(u) up to which it is ``length`` m long: u is at most that."""
+def _parameter_at_end(curve: Cubic, length: float) -> float:
+    """Return the parameter at which a graph v(u) is ``length`` m long, by bisection from 0 to ``length``."""
     low, high = 0.0, length
     for _ in range(60):
         middle = (low + high) / 2
-        parts = _divided(middle, _PARTS)
+        parts = _subdivide(middle, _PARTS)
         long = sum(_integral(lambda x: _speed(curve, x), p, q) for p, q in parts)
         low, high = (middle, high) if long < length else (low, middle)
     return (low + high) / 2
 
 
-def _parameter(curve: Cubic, length: Fraction, s: float) -> float:
-    """The parameter ``s`` m along the curve; beyond its ends as fast as there."""
+def _parameter_at(curve: Cubic, length: Fraction, s: float) -> float:
+    """Return the parameter ``s`` m along the curve; beyond its ends the speed stays constant."""
     parameters, lengths = _table(curve, length)
     k = min(max(bisect_right(lengths, s) - 1, 0), _PARTS - 1)
     begin, end = parameters[k], parameters[k + 1]
@@ -238,7 +247,7 @@ def _parameter(curve: Cubic, length: Fraction, s: float) -> float:
 
 
 def _curvature(curve: Cubic, part: Range) -> Range:
-    """Bounds of the curvature for parameters within ``part``, by interval arithmetic."""
+    """Return bounds of the curvature for parameters within ``part``, by interval arithmetic."""
     u1, v1 = (_bounds(x, part, 1) for x in (curve.u, curve.v))
     u2, v2 = (_bounds(x, part, 2) for x in (curve.u, curve.v))
     first, second = _times(u1, v2), _times(v1, u2)
@@ -252,8 +261,8 @@ def _curvature(curve: Cubic, part: Range) -> Range:
     return min(ends) - wider, max(ends) + wider
 
 
-def _bounds(coefficients: Coefficients, part: Range, order: int) -> Range:
-    """The least and the greatest value of a derivative of a cubic, which is a parabola or a line."""
+def _bounds(coefficients: Coefficients, part: Range, order: Order) -> Range:
+    """Return the least and the greatest value of a derivative of a cubic, which is a parabola or a line."""
     _, _, c, d = map(float, coefficients)
     places = [*part]
     if order == 1 and d and part[0] < -c / (3 * d) < part[1]:

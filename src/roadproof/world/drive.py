@@ -1,9 +1,10 @@
-"""A synthesised drive: rational initial states, and accelerations and jerks in pieces, rational too.
+"""Drives with rational initial states, and rational accelerations and jerks in pieces.
 
-Along the road the jerk is constant on each piece, across it the acceleration is. At a knot acceleration and
-jerk are those of the piece which begins there, so an acceleration may jump; the last piece lasts for ever.
+Along the road the jerk is constant on each piece, across it the acceleration is. At a knot, acceleration and
+jerk are those of the piece that begins there, so an acceleration may jump; the last piece lasts for ever.
 """
 
+from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from fractions import Fraction
@@ -13,19 +14,19 @@ from typing import TypeAlias
 from roadproof.runtime.records import dataclass
 from roadproof.world.signals import Kind
 
-# Values that are constant from one start to the next.
+# A step function of time: pairs of a start (s) and the value from then on.
 Course: TypeAlias = tuple[tuple[Fraction, Fraction], ...]
-# Duration (s), acceleration at its start (m/s²), jerk (m/s³).
+# Motion along the road: duration (s), acceleration at its start (m/s²), jerk (m/s³).
 Along: TypeAlias = tuple[Fraction, Fraction, Fraction]
-# Duration (s), acceleration (m/s²).
+# Motion across the road: duration (s), acceleration (m/s²).
 Across: TypeAlias = tuple[Fraction, Fraction]
 
 FAR = Fraction(2000)
-"""So many metres behind all others is a vehicle that nothing is said of."""
+"""The distance in metres of an unconstrained vehicle behind all others."""
 
 
 def value_at(course: Course, time: Fraction) -> Fraction:
-    """What an own signal is at ``time`` >= 0."""
+    """Return the value of a custom signal at ``time`` >= 0."""
     return max((start, value) for start, value in course if start <= time)[1]
 
 
@@ -33,7 +34,7 @@ def value_at(course: Course, time: Fraction) -> Fraction:
 class Piece:
     """Accelerations in m/s² for ``duration`` seconds; None is for ever (the last piece).
 
-    ``a_lon`` is that at the start of the piece, and grows by ``j_lon`` (m/s³); ``a_lat`` is constant.
+    ``a_lon`` is the value at the start of the piece, and grows by ``j_lon`` (m/s³); ``a_lat`` is constant.
     """
 
     duration: Fraction | None
@@ -44,9 +45,9 @@ class Piece:
 
 @dataclass(frozen=True)
 class Motion:
-    """One vehicle: its box in m, its state at time 0 (m, m/s; front-left corner), and its pieces.
+    """The motion of one vehicle: its box (m), state at time 0 (m, m/s; front-left corner), and pieces.
 
-    ``kind`` None: nothing says what it is.
+    ``kind``: None if it is unknown.
     """
 
     length: Fraction
@@ -74,7 +75,7 @@ class Motion:
 
     @property
     def has_jerk(self) -> bool:
-        """Whether the acceleration is not constant on some piece."""
+        """Return whether the acceleration changes inside a piece."""
         return any(piece.j_lon != 0 for piece in self.pieces)
 
 
@@ -82,15 +83,15 @@ class Motion:
 class Drive:
     """The motions of all vehicles by name, on one clock.
 
-    ``own``: the courses of own signals by name and vehicle ('' for none), each a value from every start on
-    (SI; 0 and 1 are false and true), the first at 0, the last for ever.
+    ``custom_signals``: values by name and vehicle ('' for none): pairs of a start time and the value from
+    then on (SI; 0 and 1 are false and true). The first start is 0; the last value holds for ever.
     """
 
     vehicles: Mapping[str, Motion]
-    own: Mapping[tuple[str, str], Course] = field(default_factory=dict)
+    custom_signals: Mapping[tuple[str, str], Course] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for (name, vehicle), course in self.own.items():
+        for (name, vehicle), course in self.custom_signals.items():
             starts = [start for start, _ in course]
             if not starts or starts[0] != 0 or starts != sorted(set(starts)):
                 raise ValueError(f"the values of {name} {vehicle}: their times must ascend from 0")
@@ -98,24 +99,25 @@ class Drive:
                 raise ValueError(f"{name} is said of {vehicle}, which the drive does not have")
 
     def cast(self, roles: Mapping[str, str]) -> "Drive":
-        """The drive with other names: for each new one the vehicle that has it, with its own signals."""
-        own = {(name, ""): course for (name, vehicle), course in self.own.items() if not vehicle}
+        """Return the drive with other names: ``roles`` maps each new name to the vehicle that gets it."""
+        signals = self.custom_signals.items()
+        renamed = {(name, ""): course for (name, vehicle), course in signals if not vehicle}
         for new, old in roles.items():
-            own |= {(name, new): course for (name, vehicle), course in self.own.items() if vehicle == old}
-        return Drive({new: self.vehicles[old] for new, old in roles.items()}, own)
+            renamed |= {(name, new): course for (name, vehicle), course in signals if vehicle == old}
+        return Drive({new: self.vehicles[old] for new, old in roles.items()}, renamed)
 
     def followed_by(self, names: Iterable[str]) -> "Drive":
-        """The drive with further vehicles, each of which moves as the last one does, far behind it."""
+        """Return the drive with further vehicles, each far behind the last one and moving as it does."""
         vehicles, roles = dict(self.vehicles), {name: name for name in self.vehicles}
         for name in names:
             last = min(vehicles, key=lambda known: vehicles[known].s)
             vehicles[name] = replace(vehicles[last], s=vehicles[last].s - FAR)
             roles[name] = roles[last]
-        return Drive(vehicles, self.cast(roles).own)
+        return Drive(vehicles, self.cast(roles).custom_signals)
 
 
 def pieces_of(along: Sequence[Along], across: Sequence[Across] = ()) -> tuple[Piece, ...]:
-    """The pieces of a motion; after the last duration of each direction there is no acceleration in it.
+    """Return the pieces of a motion from accelerations along and across the road, which end in 0.
 
     Accelerations may jump from one entry to the next. Raises ``ValueError`` for a duration that is not > 0.
     """
@@ -125,18 +127,18 @@ def pieces_of(along: Sequence[Along], across: Sequence[Across] = ()) -> tuple[Pi
     ends_along = list(accumulate(duration for duration, _, _ in along))
     ends_across = list(accumulate(duration for duration, _ in across))
     times = sorted({Fraction(0), *ends_along, *ends_across})
-    made: list[Piece] = []
+    pieces: list[Piece] = []
     for time, end in zip(times, [*times[1:], None], strict=True):
         a_lon, j_lon, a_lat = (Fraction(0),) * 3
-        place = sum(x <= time for x in ends_along)
+        place = bisect_right(ends_along, time)
         if place < len(along):
-            duration, begun, j_lon = along[place]
-            a_lon = begun + j_lon * (time - ends_along[place] + duration)
-        place = sum(x <= time for x in ends_across)
+            duration, initial, j_lon = along[place]
+            a_lon = initial + j_lon * (time - ends_along[place] + duration)
+        place = bisect_right(ends_across, time)
         if place < len(across):
             a_lat = across[place][1]
-        made.append(Piece(None if end is None else end - time, a_lon, a_lat, j_lon))
-    return tuple(made)
+        pieces.append(Piece(None if end is None else end - time, a_lon, a_lat, j_lon))
+    return tuple(pieces)
 
 
 def motion_of(
@@ -146,8 +148,12 @@ def motion_of(
     along: Sequence[Along],
     across: Sequence[Across] = (),
 ) -> Motion:
-    """A motion from its box (length, width; m), its place (s, d; m) and speed (v_lon, v_lat; m/s) at time 0.
+    """Return a motion.
 
-    ``along``, ``across``: as in ``pieces_of``. Raises ``ValueError`` as that does, and for an empty box.
+    Args:
+        box: Length and width in m.
+        place: s and d at time 0, in m.
+        speed: v_lon and v_lat at time 0, in m/s.
+        along, across: As in ``pieces_of``, which may raise ``ValueError``; so does an empty box.
     """
     return Motion(*box, *place, *speed, pieces_of(along, across))

@@ -1,10 +1,10 @@
-"""Rules that lanelets of a road keep, and which lanes lie side by side (semantics §4)."""
+"""Rules that the lanelets of a road obey, and adjacency of lanes (semantics §4)."""
 
 from fractions import Fraction
 from itertools import combinations, pairwise
 
 from roadproof.errors import InputError
-from roadproof.world.road import Lanelet, pairs
+from roadproof.world.road import Lanelet, adjacency
 
 
 def check_lanelets(lanelets: tuple[Lanelet, ...], where: str) -> None:
@@ -34,8 +34,8 @@ def check_lanelets(lanelets: tuple[Lanelet, ...], where: str) -> None:
 
 
 def shared_boundaries(lanelets: tuple[Lanelet, ...]) -> frozenset[frozenset[str]]:
-    """Pairs of lanes with lanelets that share a boundary line but do not overlap."""
-    return pairs(
+    """Return the pairs of lanes that have lanelets with a common boundary line, next to each other in s."""
+    return adjacency(
         (a.lane, b.lane)
         for a, b in combinations(lanelets, 2)
         if a.lane != b.lane and (a.d[1] == b.d[0] or b.d[1] == a.d[0]) and _alongside(a, b)

@@ -1,18 +1,23 @@
-"""How far lengths along the lanes of a bent road are from those in s."""
+"""The difference between lengths along the lanes of a bent road and lengths in s."""
+
+from __future__ import annotations
 
 from collections.abc import Iterable
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from roadproof.runtime.records import dataclass
-from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Lanelet, Road
+
+if TYPE_CHECKING:
+    from roadproof.world.reference_line import ReferenceLine
 
 
 @dataclass(frozen=True)
 class LengthError:
-    """How much longer or shorter lanes are than their s says; formulas and RSS distances measure in s.
+    """The largest difference between lengths along lanes and lengths in s, in which formulas and RSS measure.
 
-    ``share``: at one place, the greatest |κ·d|. ``metres``: on the whole way along a lane, the greatest sum.
+    ``share``: at one place, the greatest |κ·d|. ``metres``: along a whole lane, the greatest sum.
     """
 
     share: Fraction
@@ -23,15 +28,15 @@ class LengthError:
 
 
 def length_error_of(road: Road | None) -> LengthError | None:
-    """The greatest error of lengths on a road; None where it is straight."""
+    """Return the largest error of lengths on a road; None if it is straight."""
     if road is None or road.line is None:
         return None
     error = length_error(road.line, road.lanelets)
     return error if error.share else None
 
 
-def told_bends(road: Road | None) -> str:
-    """How far lengths in the lanes of a road are from those in s, in words; empty where it is straight."""
+def bend_note(road: Road | None) -> str:
+    """Return a note on the errors of lengths on a road; empty if it is straight."""
     error = length_error_of(road)
     if road is None or error is None:
         return ""
@@ -39,7 +44,7 @@ def told_bends(road: Road | None) -> str:
 
 
 def length_error(line: ReferenceLine, lanelets: Iterable[Lanelet]) -> LengthError:
-    """The greatest error of lengths on lanelets: an edge at d is 1 - κ·d times as long as the line."""
+    """Return the largest error of lengths on lanelets: an edge at d is 1 - κ·d times as long as the line."""
     share, metres = Fraction(0), dict[str, Fraction]()
     bends = [x for x in line.bends() if x.greatest]
     for lanelet in lanelets:

@@ -1,8 +1,8 @@
 """Roads and vehicles from TOML files; every contradiction is refused with file, name and rule.
 
-Numbers may be written as TOML numbers or as text (``"9/2"``) and are read exactly. Lanelets of a
-road: ``id``, ``lane``, ``zone``, ``attribute``, ``s = [from, to]`` (``-inf``, ``inf`` without bound) and
-``d = [right, left]``. Lanes that share a boundary are adjacent (semantics §4).
+Numbers may be written as TOML numbers or as text (``"9/2"``), and are read exactly. A lanelet of a road has
+``id``, ``lane``, ``zone``, ``attribute``, ``s = [from, to]`` (``-inf``, ``inf`` for unbounded) and ``d =
+[right, left]``. Lanes that share a boundary are adjacent (semantics §4).
 """
 
 import dataclasses
@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import TypeAlias, cast, get_args
 
 from roadproof.errors import InputError
-from roadproof.extension import entries, imported
+from roadproof.extension import entries, import_entry
 from roadproof.runtime.files import read_text
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.package_data import shipped_folder
 from roadproof.world.lanelet_rules import check_lanelets, shared_boundaries
-from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
+from roadproof.world.road import Attribute, Lanelet, Road, Zone, adjacency
 from roadproof.world.signals import KINDS, LIMITED, Kind
 from roadproof.world.vehicle import Range, Vehicle
 
@@ -25,34 +25,36 @@ Content: TypeAlias = Mapping[str, object]
 
 
 def names_of(kind: str) -> tuple[str, ...]:
-    """The bundled models of a kind (``roads`` or ``vehicles``), sorted."""
-    return tuple(sorted(p.stem for p in (shipped("models") / kind).glob("*.toml")))
+    """Return the names of the bundled models of a kind (``roads`` or ``vehicles``), sorted."""
+    return tuple(sorted(p.stem for p in (shipped_folder("models") / kind).glob("*.toml")))
 
 
 def load_road(name_or_path: str | Path) -> Road:
-    """A bundled road by name, or a user's by path: TOML, or a stretch of a map.
+    """Load a bundled road by name, or a file by path: TOML, or a stretch of a map (``MAP#STRETCH``).
 
-    Raises ``InputError``; ``UsageError`` for a stretch that is not well said.
+    Raises ``InputError``; ``UsageError`` for a stretch that is not well specified.
     """
     text = str(name_or_path)
     if "." in text:  # no name of a bundled road
         reader = entries("roads").get(Path(text.partition("#")[0]).suffix)
         if reader is not None:
-            road: Road = imported(reader)(text)
+            road: Road = import_entry(reader)(text)
             return road
     return load_recorded_road(name_or_path)[0]
 
 
 def load_recorded_road(name_or_path: str | Path, directions: tuple[int, ...] = ()) -> tuple[Road, int]:
-    """The road of a recording, and its driving direction: one of ``directions``, by default the first.
+    """Load the road of a recording and its driving direction: one of ``directions``, by default the first.
 
-    Where there are no ``directions``, the file must not name one, and it is 0. Raises ``InputError``.
+    Without ``directions``, the file must not name one, and 0 is returned. Raises ``InputError``.
     """
     path, content = _read("roads", name_or_path)
-    _only(content, {"lanelet", "adjacent", "name", *(["direction"] if directions else [])}, f"{path}")
+    _refuse_others(
+        content, {"lanelet", "adjacent", "name", *(["direction"] if directions else [])}, f"{path}"
+    )
     way = content.get("direction", directions[0] if directions else 0)
-    found = next((x for x in directions or (0,) if x == way and not isinstance(way, bool)), None)
-    if found is None:
+    direction = next((x for x in directions or (0,) if x == way and not isinstance(way, bool)), None)
+    if direction is None:
         shown = " or ".join(map(str, directions))
         raise InputError(f"{path}: direction={way!r}, but it must be {shown}")
     entries = content.get("lanelet")
@@ -63,15 +65,15 @@ def load_recorded_road(name_or_path: str | Path, directions: tuple[int, ...] = (
     adjacent = shared_boundaries(lanelets)
     if "adjacent" in content:
         _check_declared(content.get("adjacent"), adjacent, str(path))
-    return Road(str(content.get("name", path.stem)), lanelets, adjacent), found
+    return Road(str(content.get("name", path.stem)), lanelets, adjacent), direction
 
 
 def load_vehicle(name_or_path: str | Path) -> Vehicle:
-    """A bundled vehicle by name, or a user's by path. Raises ``InputError``."""
+    """Load a bundled vehicle by name, or a file by path. Raises ``InputError``."""
     path, content = _read("vehicles", name_or_path)
     optional = ("name", "kind", "a_bend")
     fields = [field.name for field in dataclasses.fields(Vehicle) if field.name not in optional]
-    _only(content, {*fields, *optional}, str(path))
+    _refuse_others(content, {*fields, *optional}, str(path))
     kind = cast(Kind | None, content.get("kind"))
     if kind is not None:
         require_one_of(f"{path}", "kind", kind, KINDS)
@@ -83,9 +85,9 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     one = {k: _number(content[k], f"{path}, {k}") for k in numbers}
     two = {k: _range(content[k], f"{path}, {k}") for k in lists}
     for field in fields:
-        wanted = two if field in (*LIMITED, "cruise") else one
-        if field not in wanted:
-            raise InputError(f"{path}: {field} must be {'[low, high]' if wanted is two else 'one number'}")
+        allowed = two if field in (*LIMITED, "cruise") else one
+        if field not in allowed:
+            raise InputError(f"{path}: {field} must be {'[low, high]' if allowed is two else 'one number'}")
     for field, value in one.items():
         if value <= 0:
             raise InputError(f"{path}: {field}={value}, but it must be greater than 0")
@@ -94,17 +96,17 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     if slowest < 0:
         raise InputError(f"{path}: v_lon starts at {slowest}, but a vehicle never reverses: use 0 or more")
     if cruise[0] < slowest or cruise[1] > fastest:
-        told = f"cruise={content.get('cruise')} is not inside v_lon={content.get('v_lon')}"
-        raise InputError(f"{path}: {told}")
+        message = f"cruise={content.get('cruise')} is not inside v_lon={content.get('v_lon')}"
+        raise InputError(f"{path}: {message}")
     for field, (low, high) in ((name, two[name]) for name in LIMITED if name != "v_lon"):
         if not low <= 0 <= high:
-            told = f"{field}=[{low}, {high}] leaves out 0, so the vehicle could never drive on"
-            raise InputError(f"{path}: {told}")
+            message = f"{field}=[{low}, {high}] leaves out 0, so the vehicle could never drive on"
+            raise InputError(f"{path}: {message}")
     return vehicle
 
 
 def read_toml(path: Path) -> Content:
-    """The content of a file, its numbers exact. Raises ``InputError``."""
+    """Return the content of a file with exact numbers. Raises ``InputError``."""
     import tomllib
 
     text = read_text(path, LARGEST_MODEL, "divide it, or name another file")
@@ -124,7 +126,7 @@ def _read(kind: str, name_or_path: str | Path) -> tuple[Path, Content]:
                 f"there is no {kind[:-1]} '{name_or_path}'; there are {', '.join(names_of(kind))}, "
                 f"or give the path of a .toml {'or map ' if kind == 'roads' else ''}file"
             )
-        path = shipped("models") / kind / f"{name_or_path}.toml"
+        path = shipped_folder("models") / kind / f"{name_or_path}.toml"
     return path, read_toml(path)
 
 
@@ -138,12 +140,12 @@ def _exact(text: str) -> Fraction | float:
 
 
 def require_one_of(where: str, field: str, value: object, allowed: Sequence[object]) -> None:
-    """Raise ``InputError`` where a field of a file has none of the allowed values."""
+    """Raise ``InputError`` if a field of a file has none of the allowed values."""
     if value not in allowed:
         raise InputError(f"{where}: {field}={value!r}, but it must be one of {', '.join(map(str, allowed))}")
 
 
-def _only(content: Content, known: Iterable[str], where: str) -> None:
+def _refuse_others(content: Content, known: Iterable[str], where: str) -> None:
     for key in content:
         if key not in known:
             raise InputError(f"{where}: '{key}' is unknown; there are {', '.join(sorted(known))}")
@@ -173,7 +175,7 @@ def _lanelet(entry: object, where: str) -> Lanelet:
     fields = ("id", "lane", "zone", "attribute", "s", "d")
     if not isinstance(entry, dict):
         raise InputError(f"{where}: write it as [[lanelet]]")
-    _only(entry, fields, where)
+    _refuse_others(entry, fields, where)
     for field in fields:
         if field not in entry:
             raise InputError(f"{where}: '{field}' is missing; a lanelet has {', '.join(fields)}")
@@ -192,10 +194,10 @@ def _lanelet(entry: object, where: str) -> Lanelet:
 
 
 def _check_declared(entries: object, geometric: frozenset[frozenset[str]], where: str) -> None:
-    """Raise ``InputError`` where lanes are declared adjacent otherwise than they lie."""
+    """Raise ``InputError`` if the declared pairs of adjacent lanes differ from the geometry."""
     if not isinstance(entries, list) or not all(isinstance(e, list) and len(e) == 2 for e in entries):
         raise InputError(f"{where}: adjacent={entries!r}; write a list of pairs of lanes")
-    declared = pairs((str(a), str(b)) for a, b in entries)
+    declared = adjacency((str(a), str(b)) for a, b in entries)
     for pair in sorted(declared ^ geometric, key=sorted):
         names = " and ".join(sorted(pair))
         wrong = (

@@ -1,6 +1,6 @@
-"""Polynomials of several variables with rational coefficients, exactly.
+"""Exact polynomials of several variables with rational coefficients.
 
-The encoders and the reasons that are put to Coq share them. The judge has polynomials of time alone
+The encoders and the derivations that Coq checks share them. The judge has polynomials of time alone
 (``semantics.exact.polynomial``), which are twice as fast (docs/adr/0037-two-kinds-of-polynomials.md).
 """
 
@@ -16,7 +16,9 @@ W = TypeVar("W")
 
 @dataclass(frozen=True)
 class Polynomial(Generic[V]):
-    """Σ coefficient · monomial; a monomial is a sorted tuple of variables, repeated for powers."""
+    """The sum Σ coefficient · monomial; a monomial is a sorted tuple of variables, with repetitions for
+    powers.
+    """
 
     terms: Mapping[tuple[V, ...], Fraction]
 
@@ -53,7 +55,7 @@ class Polynomial(Generic[V]):
         return max((len(m) for m in self.terms), default=0)
 
     def value(self, values: Callable[[V], Fraction]) -> Fraction:
-        """The value where ``values`` gives that of each variable."""
+        """Return the value at the point that ``values`` gives, a number for each variable."""
         total = Fraction(0)
         for monomial, factor in self.terms.items():
             for variable in monomial:
@@ -62,7 +64,7 @@ class Polynomial(Generic[V]):
         return total
 
     def substitute(self, by: Callable[[V], "Polynomial[W]"]) -> "Polynomial[W]":
-        """Each variable replaced by a polynomial."""
+        """Return the polynomial with each variable replaced by a polynomial."""
         total: dict[tuple[W, ...], Fraction] = {}
         for monomial, factor in self.terms.items():
             product: Polynomial[W] = constant(factor)
@@ -78,17 +80,17 @@ def _tidy(terms: dict[tuple[V, ...], Fraction]) -> Polynomial[V]:
 
 
 def constant(value: Fraction) -> "Polynomial[V]":
-    """A polynomial without variables."""
+    """Return a polynomial without variables."""
     return Polynomial({(): value} if value else {})
 
 
 def variable(name: V) -> Polynomial[V]:
-    """The polynomial ``name``."""
+    """Return the polynomial ``name``."""
     return Polynomial({(name,): Fraction(1)})
 
 
 def affine(parts: Iterable[tuple[V, Fraction]], rest: Fraction = Fraction(0)) -> Polynomial[V]:
-    """Σ coefficient · variable + rest."""
+    """Return the polynomial Σ coefficient · variable + rest."""
     total: dict[tuple[V, ...], Fraction] = {(): rest}
     for name, factor in parts:
         total[(name,)] = total.get((name,), Fraction(0)) + factor

@@ -1,7 +1,7 @@
-"""The reference line of a road in the plane, in which s is measured: curves, one after the other.
+"""The reference line of a road in the plane, along which s is measured: a sequence of curves.
 
 A place (s, d) of the road is d to the left of the line at s, at a right angle to it (ASAM OpenDRIVE 1.8,
-section 8.3). Before its beginning and after its end the line goes straight on.
+section 8.3). Before its beginning and after its end the line is extended straight.
 """
 
 import math
@@ -14,17 +14,17 @@ from roadproof.runtime.records import dataclass
 from roadproof.world.curves import Bend, Curve, Pose
 
 _SPACING = 5.0
-"""Metres between the points from which the nearest place of a line is looked for."""
+"""Metres between the points among which the nearest place of a line is searched first."""
 _STEPS, _STEP, _NEAR, _SLOWEST = 50, 1e-4, 1e-10, 0.05
 """Newton's method: most steps, the step of its derivative and the last step (m), the least derivative."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """A curve of ``length`` m from (``x``, ``y``) on, with ``heading`` (rad) there; ``s``: where it is (m).
+    """A curve of ``length`` m that starts at (``x``, ``y``) with ``heading`` (rad); ``s``: where it is (m).
 
-    ``backward``: the line goes from the end of the curve to its beginning. ``offset``: it is so far (m) to
-    the left of the curve, seen along the line.
+    ``backward``: the line runs from the end of the curve to its beginning. ``offset``: the distance (m) of
+    the line to the left of the curve, seen along the line.
     """
 
     s: Fraction
@@ -41,8 +41,8 @@ class Part:
         return self.s + self.length
 
     def pose(self, s: float) -> Pose:
-        """The line at ``s``."""
-        begin, length, x, y, heading, aside = self._rounded
+        """Return place and direction of the line at ``s``."""
+        begin, length, x, y, heading, aside = self._floats
         u = s - begin
         local = self.curve.pose(length - u if self.backward else u, self.length)
         turn = math.cos(heading), math.sin(heading)
@@ -52,27 +52,27 @@ class Part:
         return Pose(x - aside * math.sin(heading), y + aside * math.cos(heading), heading)
 
     @cached_property
-    def _rounded(self) -> tuple[float, float, float, float, float, float]:
-        """``s``, ``length``, ``x``, ``y``, ``heading`` and ``offset``, to be computed once."""
+    def _floats(self) -> tuple[float, float, float, float, float, float]:
+        """``s``, ``length``, ``x``, ``y``, ``heading`` and ``offset`` as floats, computed once."""
         s, length, x, y, heading, offset = map(
             float, (self.s, self.length, self.x, self.y, self.heading, self.offset)
         )
         return s, length, x, y, heading, offset
 
     def bends(self) -> Iterator[Bend]:
-        """Bounds of the curvature of the curve, by s and seen along the line."""
+        """Yield bounds of the curvature of the line, by s."""
         for x in self.curve.bends(self.length):
             if not self.backward:
-                yield Bend(self.s + x.begin, self.s + x.end, *self._aside(x.low, x.high))
+                yield Bend(self.s + x.begin, self.s + x.end, *self._with_offset(x.low, x.high))
                 continue
             low, high = (tuple(-y for y in reversed(z)) for z in (x.high, x.low))
             ends = self.end - x.end, self.end - x.begin
-            yield Bend(*ends, *self._aside((low[0], low[1]), (high[0], high[1])))
+            yield Bend(*ends, *self._with_offset((low[0], low[1]), (high[0], high[1])))
 
-    def _aside(
+    def _with_offset(
         self, low: tuple[Fraction, Fraction], high: tuple[Fraction, Fraction]
     ) -> tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]:
-        """Bounds for the line beside the curve: κ/(1 - κ·offset), which grows with κ."""
+        """Return the bounds for the line beside the curve: κ/(1 - κ·offset), which grows with κ."""
         if not self.offset:
             return low, high
         least, most = (x / (1 - x * self.offset) for x in (min(low), max(high)))
@@ -81,7 +81,7 @@ class Part:
 
 @dataclass(frozen=True)
 class ReferenceLine:
-    """``parts`` follow each other in s."""
+    """A sequence of ``parts``, each beginning in s where the one before ends."""
 
     parts: tuple[Part, ...]
 
@@ -98,7 +98,7 @@ class ReferenceLine:
         return self.parts[-1].end
 
     def pose(self, s: float) -> Pose:
-        """The place of the line at ``s`` (m) and its direction."""
+        """Return the place of the line at ``s`` (m) and its direction."""
         begins, end = self._places
         inside = min(max(s, begins[0]), end)
         k = bisect_right(begins, inside) - 1
@@ -110,11 +110,11 @@ class ReferenceLine:
 
     @cached_property
     def _places(self) -> tuple[list[float], float]:
-        """s where each part begins, and where the last one ends."""
+        """The s at which each part begins, and at which the last one ends."""
         return [float(x.s) for x in self.parts], float(self.end)
 
     def curvature_rate(self, s: float) -> float:
-        """The change of curvature per metre at ``s`` (1/m²), by its bounds; 0 beyond the ends."""
+        """Return the change of curvature per metre at ``s`` (1/m²), from its bounds; 0 beyond the ends."""
         k = bisect_right(self._bends, s, key=lambda x: float(x.begin)) - 1
         if k < 0 or self._bends[k].end <= s:
             return 0.0
@@ -123,30 +123,30 @@ class ReferenceLine:
         return float(change / 2 / (bend.end - bend.begin))
 
     def place(self, s: float, d: float) -> tuple[float, float]:
-        """Where (s, d) is in the plane (m)."""
+        """Return the point (s, d) in coordinates of the plane (m)."""
         pose = self.pose(s)
         return pose.x - d * math.sin(pose.heading), pose.y + d * math.cos(pose.heading)
 
     def locate(self, x: float, y: float, near: float | None = None) -> tuple[float, float]:
-        """s and d of a point of the plane (m): those of the nearest place of the line.
+        """Return s and d of a point of the plane (m), by Newton's method for the nearest place of the line.
 
-        ``near``: s of a place some metres from it, if it is known.
+        ``near``: s of a place some metres away, if one is known.
         """
         s = near
         if s is None:
             s = min(self.samples, key=lambda known: math.hypot(known[1] - x, known[2] - y))[0]
         for _ in range(_STEPS):
-            along = self._seen(s, x, y)[0]
-            ahead = self._seen(s + _STEP, x, y)[0]
+            along = self._offset_at(s, x, y)[0]
+            ahead = self._offset_at(s + _STEP, x, y)[0]
             rate = (along - ahead) / _STEP
             move = along / rate if rate > _SLOWEST else along
             s += min(max(move, -_SPACING), _SPACING)
             if abs(move) < _NEAR:
                 break
-        return s, self._seen(s, x, y)[1]
+        return s, self._offset_at(s, x, y)[1]
 
-    def _seen(self, s: float, x: float, y: float) -> tuple[float, float]:
-        """How far a point is ahead and to the left of the line at ``s`` (m)."""
+    def _offset_at(self, s: float, x: float, y: float) -> tuple[float, float]:
+        """Return how far a point is ahead and to the left of the line at ``s`` (m)."""
         pose = self.pose(s)
         cos, sin = math.cos(pose.heading), math.sin(pose.heading)
         x, y = x - pose.x, y - pose.y
@@ -154,14 +154,14 @@ class ReferenceLine:
 
     @cached_property
     def samples(self) -> list[tuple[float, float, float]]:
-        """s and places of points ``_SPACING`` m from each other or less."""
+        """The s, x and y of points that are at most ``_SPACING`` m apart."""
         begin, end = float(self.begin), float(self.end)
         count = max(math.ceil((end - begin) / _SPACING), 1)
         places = (begin + (end - begin) * k / count for k in range(count + 1))
         return [(s, pose.x, pose.y) for s, pose in ((s, self.pose(s)) for s in places)]
 
     def bends(self) -> tuple[Bend, ...]:
-        """Bounds of the curvature, in the order of s."""
+        """Return bounds of the curvature, in the order of s."""
         return self._bends
 
     @cached_property

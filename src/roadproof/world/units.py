@@ -1,4 +1,4 @@
-"""The one table of units: what numbers are written in, by specifications, claims, models and answers."""
+"""The table of units of specifications, claims, models and answers."""
 
 from collections.abc import Mapping
 from fractions import Fraction
@@ -7,7 +7,7 @@ from typing import TypeAlias
 # Exponents of metre and second: (1, -2) is an acceleration.
 Dimension: TypeAlias = tuple[int, int]
 
-# Each by its name: how many of the SI unit of its dimension it is, and the dimension.
+# By name: the factor to the SI unit of the same dimension, and the dimension.
 UNITS: Mapping[str, tuple[Fraction, Dimension]] = {
     "s": (Fraction(1), (0, 1)),
     "ms": (Fraction(1, 1000), (0, 1)),
@@ -23,7 +23,7 @@ SI: Mapping[Dimension, str] = {dimension: unit for unit, (factor, dimension) in 
 
 
 def unit_text(dimension: Dimension) -> str:
-    """The unit in which values of ``dimension`` are printed; empty without dimension."""
+    """Return the unit in which values of ``dimension`` are printed; empty for no dimension."""
     if dimension == (0, 0):
         return ""
     metres, seconds = dimension

@@ -1,4 +1,4 @@
-"""What a vehicle can do: its box and the limits of its motion (semantics §2)."""
+"""Models of vehicles: the box, and the limits of its motion (semantics §2)."""
 
 from collections.abc import Mapping
 from dataclasses import field, replace
@@ -15,11 +15,10 @@ Range = tuple[Fraction, Fraction]
 class Vehicle:
     """A point mass with a box. Lengths in m, speeds in m/s, accelerations in m/s².
 
-    ``lateral_share``: |v_lat| is at most this share of v_lon, which keeps the heading below
-    arctan(share); ``cruise`` is the range of speeds that a natural drive starts with, and
-    ``jump_lon`` and ``jump_lat`` bound how far the acceleration of a natural drive
-    changes from one piece to the next. ``kind`` None: the model does not say. ``a_bend``: on a bend, the
-    greatest absolute value of the acceleration across in the plane (``world.bends``).
+    ``lateral_share``: the largest |v_lat| as a share of v_lon, which keeps the heading below arctan(share).
+    ``cruise``: the initial speeds of a natural drive. ``jump_lon`` and ``jump_lat``: the largest change of
+    its acceleration from one piece to the next. ``kind``: None if the model does not say. ``a_bend``: on a
+    bend, the greatest absolute value of the lateral acceleration in the plane (``world.bends``).
     """
 
     name: str
@@ -34,18 +33,18 @@ class Vehicle:
     jump_lon: Fraction
     jump_lat: Fraction
     kind: Kind | None = None
-    a_bend: Fraction = field(default=Fraction(4), repr=False)  # a search on bends has it in ``name``
+    a_bend: Fraction = field(default=Fraction(4), repr=False)  # ``bends.on_bends`` puts it into ``name``
 
 
-# Ranges whose ends can be moved, and their units.
+# Ranges whose ends a user can change, and their units.
 LIMITS: Mapping[str, str] = {name: SIGNALS[name].unit for name in LIMITED}
 
 
 def with_limits(vehicle: Vehicle, limits: Mapping[str, Fraction]) -> Vehicle:
-    """``vehicle`` with other ends of its ranges, given as ``v_lon.max`` or ``a_lon.min``; its name says so.
+    """Return ``vehicle`` with other limits, named ``v_lon.max`` or ``a_lon.min``; its name lists them.
 
-    The cruising speeds are cut to the speeds that are left. Raises ``UsageError`` for a range that is empty,
-    that lets a vehicle reverse, or that leaves out going straight on at a steady speed.
+    Cruising speeds are cut to the new range. Raises ``UsageError`` for a range that is empty, allows to
+    reverse, or excludes driving straight on at a steady speed.
     """
     if not limits:
         return vehicle
@@ -64,9 +63,9 @@ def with_limits(vehicle: Vehicle, limits: Mapping[str, Fraction]) -> Vehicle:
             raise UsageError(f"v_lon from {low} {unit}: a vehicle never reverses: use 0 or more")
         if name != "v_lon" and not low <= 0 <= high:
             raise UsageError(f"{name} from {low} to {high} {unit} leaves out 0, so no vehicle could drive on")
-    made = replace(vehicle, **ranges)
-    slow, fast = made.v_lon
+    changed_vehicle = replace(vehicle, **ranges)
+    slow, fast = changed_vehicle.v_lon
     cruise = max(slow, vehicle.cruise[0]), min(fast, vehicle.cruise[1])
     cruise = cruise if cruise[0] < cruise[1] else (slow, fast)
     changed = ", ".join(f"{limit}={value}" for limit, value in limits.items())
-    return replace(made, name=f"{vehicle.name} with {changed}", cruise=cruise)
+    return replace(changed_vehicle, name=f"{vehicle.name} with {changed}", cruise=cruise)

@@ -10,13 +10,13 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
-from roadproof.extensions.assurance.case.case import Kind
+from roadproof.extensions.assurance.case.case import ElementKind
 from roadproof.extensions.assurance.case.reading import read_case
-from roadproof.extensions.assurance.case.states import State
+from roadproof.extensions.assurance.case.states import ElementState
 from roadproof.extensions.assurance.case.template import fill_template
+from roadproof.extensions.assurance.folder_view import folder_data
 from roadproof.extensions.assurance.solutions import whole_verdict
 from roadproof.frontends.cli.main import main
-from roadproof.questions.views import folder_data
 
 ROOT = Path(__file__).parents[3]
 CLAIMS = ("false -> danger(SV,POV)", "v_lon(SV) > 2 m/s -> v_lon(SV) > 3 m/s")
@@ -72,7 +72,7 @@ def certificates(case: Path) -> list[Path]:
 def test_a_case_holds(case: Path) -> None:
     found = rp.assurance(case, jobs=1)
     assert found.exit_code == 0
-    assert {*found.states.values()} == {State.HOLDS}
+    assert {*found.states.values()} == {ElementState.HOLDS}
     assert found.open_points == ()
     assert str(found).endswith("2 solutions: 2 holds; the top goal G1 holds")
     assert found.solutions["Sn1"].verdicts == {"PROVED": 1, "REFUTED": 1}
@@ -97,8 +97,8 @@ def test_a_damaged_certificate_breaks_the_case_up_to_the_top(
         path.read_text("utf-8").replace("danger", "safe", 1).replace("3 m/s", "1 m/s", 1), "utf-8"
     )
     found = rp.assurance(case, jobs=1)
-    assert found.states == dict.fromkeys(("Sn1", "G2", "S1", "G1"), State.BROKEN) | dict.fromkeys(
-        ("Sn2", "G3"), State.HOLDS
+    assert found.states == dict.fromkeys(("Sn1", "G2", "S1", "G1"), ElementState.BROKEN) | dict.fromkeys(
+        ("Sn2", "G3"), ElementState.HOLDS
     )
     assert found.exit_code == 10
     for command in ("assurance", "check"):
@@ -111,10 +111,10 @@ def test_a_damaged_certificate_breaks_the_case_up_to_the_top(
 def test_a_case_does_not_hold_where_a_file_is_gone_or_no_json(case: Path) -> None:
     certificates(case)[0].write_text("{", "utf-8")
     found = rp.assurance(case, jobs=1)
-    assert (found.state, found.exit_code) == (State.BROKEN, 3)
+    assert (found.state, found.exit_code) == (ElementState.BROKEN, 3)
     certificates(case)[0].unlink()
     found = rp.assurance(case, jobs=1)
-    assert (found.state, found.exit_code) == (State.UNDECIDED, 20)
+    assert (found.state, found.exit_code) == (ElementState.UNDECIDED, 20)
     (case.parent / "review.txt").unlink()
     assert "review.txt does not exist" in rp.assurance(case, jobs=1).reasons("Sn2")[0]
 
@@ -149,7 +149,7 @@ def test_selected_entries_alone_count(case: Path) -> None:
     case.write_text(text, "utf-8")
     assert rp.assurance(case, jobs=1).exit_code == 0
     (case.parent / "claims" / proof).write_text("{}", "utf-8")
-    assert rp.assurance(case, jobs=1).state is State.BROKEN
+    assert rp.assurance(case, jobs=1).state is ElementState.BROKEN
 
 
 def test_bounded_answers_hold_within_limits_and_not_when_strict(case: Path) -> None:
@@ -163,10 +163,10 @@ def test_bounded_answers_hold_within_limits_and_not_when_strict(case: Path) -> N
     case.write_text(text, "utf-8")
     found = rp.assurance(case, jobs=1)
     assert found.exit_code == 0
-    limits = {x.name: x.told for x in found.solutions["Sn1"].limits}
+    limits = {x.name: x.texts for x in found.solutions["Sn1"].limits}
     assert limits["within limits"][0].startswith("NONE-WITHIN: road main-2; dt 1/2; horizon 6; ")
     strict = rp.assurance(case, jobs=1, strict=True)
-    assert (strict.states["Sn1"], strict.exit_code) == (State.UNDECIDED, 20)
+    assert (strict.states["Sn1"], strict.exit_code) == (ElementState.UNDECIDED, 20)
 
 
 def test_a_case_is_checked_alone(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -232,7 +232,7 @@ def test_the_template_claims_what_the_plates_show(tmp_path: Path, lemmas: bool, 
     assert ("without a lemma" in goal) is not lemmas
     assert (f"{proofs} lemmas" in solution.text) is lemmas
     state = rp.assurance(told, jobs=1).states
-    assert state[solution.id] is State.HOLDS
+    assert state[solution.id] is ElementState.HOLDS
 
 
 def answered(home: Path) -> dict[str, tuple[Path, str]]:
@@ -275,7 +275,9 @@ def test_the_template_counts_what_each_folder_has(
     for wide in ("foreseeable", "every scenario", "A collision that is missed"):
         assert wide not in goals
     whole = rp.assurance("c.toml", jobs=1)
-    assert {x.id: whole.states[x.id] for x in read.solutions} == {x.id: State.HOLDS for x in read.solutions}
+    assert {x.id: whole.states[x.id] for x in read.solutions} == {
+        x.id: ElementState.HOLDS for x in read.solutions
+    }
     text = Path("c.toml").read_text("utf-8")
     for count in {str(x.evidence.entries) for x in read.solutions if x.evidence}:
         Path("d.toml").write_text(
@@ -292,7 +294,7 @@ def test_the_example_claims_what_the_template_does() -> None:
     assert [name for name, x in plain.items() if "undeveloped" in x] == ["G2", "G3", "G4"]
     fixed = {name: table for name, table in plain.items() if isinstance(table, dict)}
     for name, table in fixed.items():
-        (text,) = (table[str(kind)] for kind in Kind if str(kind) in table)
+        (text,) = (table[str(kind)] for kind in ElementKind if str(kind) in table)
         assert example.elements[name].text == text
     kinds = {Path(x.evidence.path).name: x for x in example.solutions if x.evidence}
     assert all(x.evidence and x.evidence.entries for x in kinds.values())

@@ -15,12 +15,12 @@ import pytest
 import roadproof as rp
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding, exit_code
 from roadproof.extensions.assurance.build_results.junit import as_junit
+from roadproof.extensions.catalogue.cases import test_location as location_of
 from roadproof.extensions.traffic.report.cases import recording_cases
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.report.cases import Case, State
-from roadproof.frontends.report.cases import test_location as location_of
 from roadproof.frontends.report.question_cases import finding_cases
-from roadproof.reasons import NO_REASON, Why
+from roadproof.reasons import NO_REASON, ReasonKind
 from roadproof.verdict import ExitCode, Verdict
 from roadproof.verdict import exit_code as code_of
 
@@ -124,7 +124,7 @@ KINDS = ("certificate", "drive", NO_EVIDENCE)
 def findings(chosen: Sequence[tuple[Acceptance, str]]) -> list[Finding]:
     found = []
     for k, (outcome, kind) in enumerate(chosen):
-        reason = NO_REASON if outcome is Acceptance.ACCEPTED else Why.TOLD("why")
+        reason = NO_REASON if outcome is Acceptance.ACCEPTED else ReasonKind.TOLD("why")
         found.append(Finding(f"file-{k}.json", kind, outcome, reason, label=f"P{k}"))  # type: ignore[arg-type]
     return found
 
@@ -307,7 +307,7 @@ def test_tests_and_targets_of_a_catalogue() -> None:
             contradictions=remark["contradiction"],
             targets=targets,
             missing=[targets[1], *([gaps[2]] if asked else [])],
-            gaps=answer(asked=asked, targets=gaps, open={"open gap": "late"} if asked else {}),
+            gaps=answer(required=asked, targets=gaps, open={"open gap": "late"} if asked else {}),
         )
         cases = [*catalogue_cases(["doubt", "fault", "contradiction", "good"], found)]
         states = {x.name: x.state for x in cases}
@@ -355,7 +355,7 @@ def test_links_of_requirements() -> None:
 
 def test_requirements_of_every_mixture() -> None:
     """Requirements with links, parts and evidence beside them: files and exit code say one thing."""
-    from roadproof.extensions.assurance.answers.trace import Answer, LinkState
+    from roadproof.extensions.assurance.answers.trace import LinkState, TraceData
     from roadproof.extensions.assurance.build_results.requirements import requirement_cases
     from roadproof.extensions.assurance.requirements.states import worst
 
@@ -381,8 +381,23 @@ def test_requirements_of_every_mixture() -> None:
         outcomes = chooser.choices([Acceptance.ACCEPTED, *Acceptance], k=chooser.randint(0, 2))
         beside = tuple(answer(where="a.json", label="", outcome=x, reason=NO_REASON) for x in outcomes)
         given = answer(requirements=(whole, *parts), unlinked=beside)
-        code = Answer.exit_code.fget(given)  # type: ignore[attr-defined]
+        code = TraceData.exit_code.fget(given)  # type: ignore[attr-defined]
         codes.add(code)
         built = Built(tuple(requirement_cases(given)), code)
         agree(built.to_junit(), built.to_sarif(), code)
     assert codes == {ExitCode.AS_EXPECTED, ExitCode.UNEXPECTED, ExitCode.UNKNOWN}
+
+
+@pytest.mark.parametrize(
+    ("beside", "code"),
+    [
+        ((), ExitCode.UNKNOWN),
+        ((Acceptance.ACCEPTED,), ExitCode.UNKNOWN),
+        ((Acceptance.REJECTED,), ExitCode.UNEXPECTED),
+    ],
+)
+def test_no_requirement_is_no_success(beside: tuple[Acceptance, ...], code: ExitCode) -> None:
+    from roadproof.extensions.assurance.answers.trace import TraceData
+
+    given = answer(requirements=(), unlinked=tuple(answer(outcome=x) for x in beside))
+    assert TraceData.exit_code.fget(given) is code  # type: ignore[attr-defined]

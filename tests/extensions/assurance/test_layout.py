@@ -9,16 +9,16 @@ import pytest
 from extensions.assurance.cases import random_case
 from roadproof.extensions.assurance.argument import layout as layouts
 from roadproof.extensions.assurance.argument.drawing import as_file, draw_argument
-from roadproof.extensions.assurance.argument.layout import Labels, Layout, Node, Rectangle
+from roadproof.extensions.assurance.argument.layout import ArgumentLayout, Labels, Node, Rectangle
 from roadproof.extensions.assurance.argument.measured_text import width_of, wrap
-from roadproof.extensions.assurance.case.case import Kind
-from roadproof.extensions.assurance.case.states import State, propagate
+from roadproof.extensions.assurance.case.case import ElementKind
+from roadproof.extensions.assurance.case.states import ElementState, propagate
 
 SEEDS = range(25)
 TEXT = "A competent and careful driver prevents-the-preventable-collisions-of-all-disturbances %s"
 
 
-def made(seed: int, rows: int) -> Layout:
+def made(seed: int, rows: int) -> ArgumentLayout:
     """The layout of a random case with columns below some depth."""
     case = random_case(seed, most=25)
     return layouts._Tree(case.elements, Labels({}), rows).whole(case.top)
@@ -46,7 +46,7 @@ def shrunk(box: Rectangle) -> Rectangle:
 def test_every_element_is_drawn_once_and_every_relation_has_a_line(seed: int) -> None:
     case = random_case(seed, most=25)
     found = layouts.lay_out(tuple(case.elements.values()), case.top, Labels({}))
-    assert sorted(x.element.id for x in found.nodes if not x.refers) == sorted(case.elements)
+    assert sorted(x.element.id for x in found.nodes if not x.is_reference) == sorted(case.elements)
     relations = [(x.id, y) for x in case.elements.values() for y in (*x.supported_by, *x.in_context_of)]
     assert sorted((x.begin, x.end) for x in found.links) == sorted(relations)
 
@@ -61,9 +61,9 @@ def test_texts_are_inside_of_their_shapes(seed: int) -> None:
 def fits(node: Node, x: float, y: float) -> bool:
     """Whether the corner of a text around the middle of a shape is inside of it."""
     a, b = (node.box.x1 - node.box.x0) / 2, (node.box.y1 - node.box.y0) / 2
-    if node.element.kind is Kind.SOLUTION:
+    if node.element.kind is ElementKind.SOLUTION:
         return hypot(x, y) <= a
-    if node.element.kind in (Kind.ASSUMPTION, Kind.JUSTIFICATION):
+    if node.element.kind in (ElementKind.ASSUMPTION, ElementKind.JUSTIFICATION):
         return (x / a) ** 2 + (y / b) ** 2 <= 1
     return x <= a and y <= b
 
@@ -78,17 +78,19 @@ def test_lines_are_wrapped_and_nothing_is_lost() -> None:
 def test_a_broken_branch_is_marked_up_to_the_top() -> None:
     case = random_case(3)
     broken = case.solutions[0]
-    states = propagate(case, {x.id: State.HOLDS for x in case.solutions} | {broken.id: State.BROKEN})
+    states = propagate(
+        case, {x.id: ElementState.HOLDS for x in case.solutions} | {broken.id: ElementState.BROKEN}
+    )
     picture = draw_argument("Trial", tuple(case.elements.values()), case.top, states, {})
     groups = [x for x in picture.iter("g") if "broken" in x.get("class", "").split()]
     heads = {text.text for x in groups for text in x.iter("text") if text.get("class") == "head"}
-    assert heads == {f"{x} ✗ broken" for x, state in states.items() if state is State.BROKEN}
+    assert heads == {f"{x} ✗ broken" for x, state in states.items() if state is ElementState.BROKEN}
     assert len([x for x in picture.iter("g") if "breaks" in x.get("class", "")]) >= len(heads) - 1 > 0
 
 
 def test_a_file_has_no_variables_and_both_themes() -> None:
     case = random_case(3)
-    states = propagate(case, {x.id: State.HOLDS for x in case.solutions})
+    states = propagate(case, {x.id: ElementState.HOLDS for x in case.solutions})
     text = as_file(draw_argument("a < b", tuple(case.elements.values()), case.top, states, {})).decode()
     assert "var(" not in text
     assert "prefers-color-scheme: dark" in text

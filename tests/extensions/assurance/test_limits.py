@@ -1,18 +1,19 @@
 """Limits of each kind of evidence, from files as commands write them."""
 
 import json
+import pickle
 from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
 import roadproof as rp
-from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.evidence.finding import Acceptance, Finding, LimitRemark, RemarkKind, parameter_remark
 from roadproof.extensions.assurance.case.limits import limits_of
 
 
 def told(*files: Path) -> dict[str, tuple[str, ...]]:
-    return {x.name: x.told for x in limits_of(files, ())}
+    return {x.name: x.texts for x in limits_of(files, ())}
 
 
 def written(path: Path, content: Mapping[str, object]) -> Path:
@@ -57,7 +58,7 @@ def test_limits_of_answers(tmp_path: Path) -> None:
     }
     assert told(written(tmp_path / "answer.json", answer)) == {
         "readings": ("speed=total",),
-        "own signals": ("red: constant",),
+        "custom signals": ("red: constant",),
         "prevention": ("only scenarios that are preventable for driver model careful",),
         "roads": ("lengths in lanes differ by up to per_cent=0.5, metres=2.0",),
         "within limits": ("NONE-WITHIN: horizon 6; vehicles SV=car", "UNKNOWN: out of work"),
@@ -73,16 +74,46 @@ def test_bounded_answers_of_an_index_say_that_it_states_no_limits(tmp_path: Path
 @pytest.mark.parametrize(
     ("checked", "unchecked", "expected"),
     [
-        ("declared parameters", "limits of vehicles", {"parameters", "not checked"}),
-        ("with rho=1", "", {"parameters"}),
-        ("collisions allowed: boxes overlap", "", {"collisions"}),
+        (parameter_remark([]), "limits of vehicles", {"parameters", "not checked"}),
+        (parameter_remark(["rho=1"]), "", {"parameters"}),
+        (
+            LimitRemark(RemarkKind.COLLISIONS, "collisions allowed: boxes overlap", "allowed"),
+            "",
+            {"collisions"},
+        ),
         ("dense, unbounded time", "", set()),
+        ("declared parameters", "", set()),
+        ("with rho=1", "", set()),
+        ("collisions allowed: boxes overlap", "", set()),
     ],
 )
-def test_limits_of_findings(checked: str, unchecked: str, expected: set[str]) -> None:
+def test_limits_of_findings_go_by_the_kind_of_a_remark_and_not_by_its_words(
+    checked: str, unchecked: str, expected: set[str]
+) -> None:
     words = (unchecked,) if unchecked else ()
     finding = Finding("x", "drive", Acceptance.ACCEPTED, checked=(checked,), unchecked=words)
     assert {x.name for x in limits_of([], [finding])} == expected
+
+
+def test_a_remark_keeps_its_kind_and_limit_between_processes() -> None:
+    for remark in (parameter_remark(["rho=1"]), LimitRemark(RemarkKind.COLLISIONS, "words", "allowed")):
+        again = pickle.loads(pickle.dumps(remark))
+        assert (str(again), again.kind, again.limit) == (str(remark), remark.kind, remark.limit)
+
+
+@pytest.mark.parametrize("collisions", [False, True])
+def test_limits_of_a_drive_that_is_checked(collisions: bool, tmp_path: Path) -> None:
+    """Boxes overlap at once; or SV drives up to POV, and they overlap after the search ends."""
+    query = "s(SV) = s(POV) and d(SV) = d(POV)"
+    if not collisions:
+        query = "s(SV) < s(POV) and G (d(SV) = d(POV) and v_lon(SV) > v_lon(POV) + 2 m/s)"
+    found = rp.witness(query, collisions=collisions, jobs=1)
+    assert found.drives
+    found.save(tmp_path, pictures=False)
+    limits = {x.name: x.texts for x in limits_of([], rp.check(tmp_path, jobs=1).findings)}
+    assert limits["parameters"] == ("declared parameters",)
+    [told] = limits["collisions"]
+    assert told == "allowed" if collisions else told.startswith("boxes apart up to 6 s; after that")
 
 
 def test_how_far_a_search_looked_is_a_limit() -> None:
@@ -90,7 +121,7 @@ def test_how_far_a_search_looked_is_a_limit() -> None:
     finding = Finding("x", "certificate", Acceptance.ACCEPTED, verdict="NONE-WITHIN", checked=searched)
     [limit] = limits_of([], [finding])
     assert limit.name == "within limits"
-    assert limit.told == tuple(f"NONE-WITHIN: {x}" for x in searched)
+    assert limit.texts == tuple(f"NONE-WITHIN: {x}" for x in searched)
 
 
 def test_files_that_are_no_evidence_have_no_limits(tmp_path: Path) -> None:

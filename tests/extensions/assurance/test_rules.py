@@ -6,7 +6,7 @@ import pytest
 
 from extensions.assurance.cases import GOOD
 from roadproof.errors import InputError
-from roadproof.extensions.assurance.case.case import Kind
+from roadproof.extensions.assurance.case.case import ElementKind
 from roadproof.extensions.assurance.case.reading import read_case
 from tables import read_table
 
@@ -23,7 +23,14 @@ def test_a_case_is_read(tmp_path: Path) -> None:
     case = read_case(write(tmp_path, GOOD))
     assert (case.title, case.top) == ("Trial", "G1")
     assert [x.kind for x in case.elements.values()] == [
-        *(Kind.GOAL, Kind.CONTEXT, Kind.STRATEGY, Kind.GOAL, Kind.SOLUTION, Kind.GOAL)
+        *(
+            ElementKind.GOAL,
+            ElementKind.CONTEXT,
+            ElementKind.STRATEGY,
+            ElementKind.GOAL,
+            ElementKind.SOLUTION,
+            ElementKind.GOAL,
+        )
     ]
     assert case.elements["Sn1"].line == 18
     assert case.supported["G2"] == ("S1",)

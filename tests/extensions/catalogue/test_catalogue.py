@@ -14,32 +14,33 @@ import pytest
 import roadproof as rp
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError
-from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.answer import ClaimAnswer, undecided
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
-from roadproof.extensions.catalogue import showing, tested
-from roadproof.extensions.catalogue.asked import NOWHERE, Questions, Row
+from roadproof.extensions.catalogue import drive_targets
 from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer, catalogue
-from roadproof.extensions.catalogue.entries import Abstract, Concrete, Freedom
-from roadproof.extensions.catalogue.fact import Fact
+from roadproof.extensions.catalogue.entries import AbstractTest, ConcreteTest, Freedom
+from roadproof.extensions.catalogue.fact import CatalogueFact
+from roadproof.extensions.catalogue.figures import figures
+from roadproof.extensions.catalogue.judge_test import judge_test
 from roadproof.extensions.catalogue.reading import read_catalogue
 from roadproof.extensions.catalogue.report import as_text
-from roadproof.extensions.catalogue.showing import ENDANGERED, GAP, show
-from roadproof.extensions.catalogue.tested import figures
+from roadproof.extensions.catalogue.target_formulas import ENDANGERED, GAP, NO_CLASS, RowKey, TargetFormulas
+from roadproof.extensions.catalogue.targets import find_targets, target_titles
 from roadproof.extensions.exchange.export.registry import FORMATS
 from roadproof.extensions.surveys.classify.cells import Cell
 from roadproof.extensions.surveys.classify.classes import Classes, plan_of
 from roadproof.extensions.surveys.classify.division import Division, divide
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.settings.groups import Budget
+from roadproof.frontends.settings.groups import BudgetSettings
 from roadproof.library.bind import bind
-from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
+from roadproof.library.scenarios import Scenario, apply_scenario, name_of, vehicles_of
 from roadproof.library.specification import Query
-from roadproof.reasons import Why
-from roadproof.runtime.cost import NO_COST, Cost
-from roadproof.semantics.exact.algebraic import approximate
-from roadproof.semantics.exact.exact import judge
+from roadproof.reasons import ReasonKind
+from roadproof.runtime.budget import NO_COST, Cost
+from roadproof.semantics.exact.algebraic import as_float
+from roadproof.semantics.exact.judging import judge
 
 pytestmark = pytest.mark.usefixtures("searched_once")
 
@@ -58,25 +59,25 @@ FIXED, ANY = Freedom(), Freedom(True, True, True)
 
 @pytest.fixture(scope="module")
 def division() -> Division:
-    return divide(basis_of(HOME, Budget()), plan_of(HOME.alone, NUMBERS), 1, in_few_words=False)
+    return divide(basis_of(HOME, BudgetSettings()), plan_of(HOME.alone, NUMBERS), 1, in_few_words=False)
 
 
 @pytest.fixture(scope="module")
-def asked(division: Division) -> Questions:
-    return Questions(HOME.alone, NUMBERS, division.classes, HOME.all_values())
+def asked(division: Division) -> TargetFormulas:
+    return TargetFormulas(HOME.alone, NUMBERS, division.classes, HOME.all_values())
 
 
-def names(asked: Questions, path: Path, freedom: Freedom = FIXED) -> set[str]:
-    answer = show(Concrete("x", str(path)), asked, freedom)
+def names(asked: TargetFormulas, path: Path, freedom: Freedom = FIXED) -> set[str]:
+    answer = judge_test(ConcreteTest("x", str(path)), asked, freedom)
     assert not answer.fault
     return {*answer.names}
 
 
 @pytest.fixture(scope="module")
-def queries(asked: Questions) -> dict[str, Query]:
+def queries(asked: TargetFormulas) -> dict[str, Query]:
     """Each scenario, class and danger by itself."""
     assert asked.classes is not None
-    found = {name_of(n): applied(HOME.alone, Scenario(n, "base")) for n in NUMBERS}
+    found = {name_of(n): apply_scenario(HOME.alone, Scenario(n, "base")) for n in NUMBERS}
     found |= {x.name: asked.class_query(x.name) for x in asked.classes.all()}
     return found | {ENDANGERED: HOME.read("initSafe(SV,POV) and F danger(SV,POV)")}
 
@@ -95,7 +96,7 @@ def one_by_one(queries: Mapping[str, Query], path: Path) -> set[str]:
     return found
 
 
-def test_all_at_once_is_one_by_one(asked: Questions, queries: dict[str, Query]) -> None:
+def test_all_at_once_is_one_by_one(asked: TargetFormulas, queries: dict[str, Query]) -> None:
     shown = {path.stem: names(asked, path) for path in DRIVES}
     assert shown == {path.stem: one_by_one(queries, path) for path in DRIVES}
     assert {name: [x for x in those if x.startswith("class_")] for name, those in shown.items()} == {
@@ -116,7 +117,7 @@ def exchanged(file: DriveFile) -> DriveFile:
     )
 
 
-def test_roles_are_fixed_or_any(asked: Questions, tmp_path: Path) -> None:
+def test_roles_are_fixed_or_any(asked: TargetFormulas, tmp_path: Path) -> None:
     path = EXAMPLE / "drives" / "braking.json"
     turned = written(tmp_path / "turned.json", exchanged(load_drive(path)))
     assert names(asked, path) == {"scenario_4", "class_4", ENDANGERED}
@@ -124,7 +125,7 @@ def test_roles_are_fixed_or_any(asked: Questions, tmp_path: Path) -> None:
     assert "scenario_4" in names(asked, turned, Freedom(roles=True))
 
 
-def test_lanes_are_fixed_or_any(asked: Questions, tmp_path: Path) -> None:
+def test_lanes_are_fixed_or_any(asked: TargetFormulas, tmp_path: Path) -> None:
     file = load_drive(EXAMPLE / "drives" / "braking.json")
     other = next(lane for lane in file.road.lanes if lane != file.lanes["L"])
     moved = written(tmp_path / "moved.json", replace(file, lanes={"L": other}))
@@ -132,74 +133,78 @@ def test_lanes_are_fixed_or_any(asked: Questions, tmp_path: Path) -> None:
     assert "scenario_4" in names(asked, moved, Freedom(lanes=True))
 
 
-def test_instants_are_those_of_the_judge(asked: Questions) -> None:
+def test_instants_are_those_of_the_judge(asked: TargetFormulas) -> None:
     """All instants count: each thing is shown from the instant on at which it is true first."""
     more = set()
     for path in (DRIVES[0], DRIVES[4]):
         file = load_drive(path)
-        answer = show(Concrete("x", str(path)), asked, Freedom(start=True))
+        answer = judge_test(ConcreteTest("x", str(path)), asked, Freedom(start=True))
         more |= answer.names - names(asked, path)
         for number in NUMBERS:
-            query = applied(HOME.alone, Scenario(number, "base"))
+            query = apply_scenario(HOME.alone, Scenario(number, "base"))
             if set(query.vehicles) <= set(file.drive.vehicles):
                 formula = bind(query.formula, file.road, file.lanes, asked.values)
                 spans = judge(formula, file.drive).truth(formula).spans()
                 first = [x.at for x in answer.shown if x.what == name_of(number)]
-                assert first == [approximate(span.begin.point) for span in spans[:1]]
+                assert first == [as_float(span.begin.point) for span in spans[:1]]
     assert more >= {"scenario_6", "scenario_8"}  # from just after the start on
 
 
 @pytest.mark.parametrize("samples", ["braking.csv", "cut-in.xml"])
-def test_samples_show_what_their_drive_shows(samples: str, asked: Questions) -> None:
+def test_samples_show_what_their_drive_shows(samples: str, asked: TargetFormulas) -> None:
     path = EXAMPLE / "samples" / samples
     drive = EXAMPLE / "drives" / f"{path.stem}.json"
-    answer = show(Concrete("x", str(path)), asked, FIXED)
+    answer = judge_test(ConcreteTest("x", str(path)), asked, FIXED)
     assert {x.what for x in answer.shown if x.at == 0} >= names(asked, drive)
     assert not answer.dense
 
 
-def test_what_is_steady_shows_nothing(asked: Questions) -> None:
+def test_what_is_steady_shows_nothing(asked: TargetFormulas) -> None:
     assert names(asked, EXAMPLE / "samples" / "steady.csv", ANY) == set()
 
 
-def test_danger_that_no_scenario_covers_is_a_gap(asked: Questions, tmp_path: Path) -> None:
+def test_danger_that_no_scenario_covers_is_a_gap(asked: TargetFormulas, tmp_path: Path) -> None:
     """A leader that brakes, among scenarios that know of cut-ins only."""
     braking = load_drive(EXAMPLE / "drives" / "braking.json")
-    turned = show(Concrete("x", str(written(tmp_path / "a.json", exchanged(braking)))), asked, FIXED)
+    turned = judge_test(
+        ConcreteTest("x", str(written(tmp_path / "a.json", exchanged(braking)))), asked, FIXED
+    )
     assert ENDANGERED in turned.names
     assert GAP not in turned.names  # it is a scenario in other roles
-    few = Questions(HOME.alone, (1, 2), None, asked.values)
-    gap = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), few, FIXED)
+    few = TargetFormulas(HOME.alone, (1, 2), None, asked.values)
+    gap = judge_test(ConcreteTest("x", str(EXAMPLE / "drives" / "braking.json")), few, FIXED)
     assert gap.names == {ENDANGERED, GAP, "gap_behaviourPOV_1", "gap_behaviourPOV_1_1"}
-    samples = show(Concrete("x", str(EXAMPLE / "samples" / "braking.csv")), few, FIXED)
+    samples = judge_test(ConcreteTest("x", str(EXAMPLE / "samples" / "braking.csv")), few, FIXED)
     assert samples.names == gap.names
-    (fault,) = tested.tested(few, [replace(gap, claims=())], [], [], tested.targets_of(few), 0.5, None).faults
+    (fault,) = find_targets(few, [replace(gap, claims=())], [], [], target_titles(few), 0.5, None).faults
     assert "a gap, which no scenario covers" in fault.told
 
 
 # --- planted faults: each is noticed by the comparison above, or by the answer itself --------------
 
 
-def a_row_is_lost(asked: Questions, monkeypatch: pytest.MonkeyPatch) -> None:
-    shown = Questions.shown
-    monkeypatch.setattr(Questions, "shown", lambda s, r, true: shown(s, r, frozenset(true - {Row(4)})))
-
-
-def scenarios_in_other_lanes(asked: Questions, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(showing, "_lanes", lambda file, free: file.road.lanes[-1:])
-
-
-def all_instants(asked: Questions, monkeypatch: pytest.MonkeyPatch) -> None:
-    instants = showing._instants
+def a_row_is_lost(asked: TargetFormulas, monkeypatch: pytest.MonkeyPatch) -> None:
+    names_of = TargetFormulas.names_of
     monkeypatch.setattr(
-        showing, "_instants", lambda judge, asked, file, free: instants(judge, asked, file, True)
+        TargetFormulas, "names_of", lambda s, r, true: names_of(s, r, frozenset(true - {RowKey(4)}))
+    )
+
+
+def scenarios_in_other_lanes(asked: TargetFormulas, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(drive_targets, "_lanes", lambda file, free: file.road.lanes[-1:])
+
+
+def all_instants(asked: TargetFormulas, monkeypatch: pytest.MonkeyPatch) -> None:
+    instants = drive_targets._instants
+    monkeypatch.setattr(
+        drive_targets, "_instants", lambda judge, asked, file, free: instants(judge, asked, file, True)
     )
 
 
 @pytest.mark.parametrize("plant", [a_row_is_lost, scenarios_in_other_lanes, all_instants])
 def test_a_planted_fault_is_noticed(
-    plant: Callable[[Questions, pytest.MonkeyPatch], None],
-    asked: Questions,
+    plant: Callable[[TargetFormulas, pytest.MonkeyPatch], None],
+    asked: TargetFormulas,
     queries: dict[str, Query],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -209,13 +214,15 @@ def test_a_planted_fault_is_noticed(
 
 def test_a_scenario_that_is_neither_shown_nor_excluded_is_no_doubt_unless_it_is_claimed() -> None:
     query = HOME.read("scenario_4(SV,POV,L)")
-    entry = Abstract("x", query)
-    runs = Fact("x", "", "runs", query)
-    still_open = Fact("x", "scenario_8", "open", query, HOME.read("scenario_8(SV,POV,L)"), "not on this road")
-    few = Questions(HOME.alone, (8,), None, HOME.all_values())
+    entry = AbstractTest("x", query)
+    runs = CatalogueFact("x", "", "runs", query)
+    still_open = CatalogueFact(
+        "x", "scenario_8", "open", query, HOME.read("scenario_8(SV,POV,L)"), "not on this road"
+    )
+    few = TargetFormulas(HOME.alone, (8,), None, HOME.all_values())
 
-    def doubts(entry: Abstract) -> list[str]:
-        found = tested.tested(few, [], [entry], [runs, still_open], tested.targets_of(few), 0.5, None)
+    def doubts(entry: AbstractTest) -> list[str]:
+        found = find_targets(few, [], [entry], [runs, still_open], target_titles(few), 0.5, None)
         assert not [x for x in found.faults if x.told.startswith("claims")]
         return [x.told for x in found.doubts]
 
@@ -225,13 +232,13 @@ def test_a_scenario_that_is_neither_shown_nor_excluded_is_no_doubt_unless_it_is_
     ]
 
 
-def test_a_drive_in_no_class_is_a_contradiction(asked: Questions) -> None:
+def test_a_drive_in_no_class_is_a_contradiction(asked: TargetFormulas) -> None:
     assert asked.classes is not None
     what = tuple(tuple(c for c in cells if c.holds != (4,)) for cells in asked.classes.what)
-    fewer = Questions(asked.specification, NUMBERS, replace(asked.classes, what=what), asked.values)
-    answer = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), fewer, FIXED)
-    assert NOWHERE in answer.names
-    found = tested.tested(fewer, [answer], [], [], tested.targets_of(fewer), 0.5, None)
+    fewer = TargetFormulas(asked.specification, NUMBERS, replace(asked.classes, what=what), asked.values)
+    answer = judge_test(ConcreteTest("x", str(EXAMPLE / "drives" / "braking.json")), fewer, FIXED)
+    assert NO_CLASS in answer.names
+    found = find_targets(fewer, [answer], [], [], target_titles(fewer), 0.5, None)
     assert [x.tests for x in found.contradictions] == [("x",)]
 
 
@@ -319,14 +326,14 @@ def test_tables_and_reports(few: Path) -> None:
     assert found.plot().png.startswith(b"\x89PNG")
 
 
-def test_road_sectors_are_told_apart(asked: Questions) -> None:
+def test_road_sectors_are_told_apart(asked: TargetFormulas) -> None:
     numbers = (4, 12)
     plan = plan_of(HOME.alone, numbers)
     what = tuple((Cell((number,), (number,), ()),) for number in (4,))
     where = tuple(Cell((number,), (number,), ()) for number in plan.sectors)
-    both = Questions(HOME.alone, numbers, Classes(plan, what, where), asked.values)
-    answer = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), both, FIXED)
-    found = tested.tested(both, [answer], [], [], tested.targets_of(both), 0.5, None)
+    both = TargetFormulas(HOME.alone, numbers, Classes(plan, what, where), asked.values)
+    answer = judge_test(ConcreteTest("x", str(EXAMPLE / "drives" / "braking.json")), both, FIXED)
+    found = find_targets(both, [answer], [], [], target_titles(both), 0.5, None)
     assert {x.name: (x.sector, x.tested) for x in found.targets} == {
         "scenario_4": ("main", ("x",)),
         "scenario_12": ("merge", ()),
@@ -359,6 +366,18 @@ formula = "scenario_1(SV,POV,L) and scenario_4(SV,POV,L)"
 """
 
 
+@pytest.mark.parametrize("road", ["", 'road = "main-2"'])
+def test_drives_of_a_test_that_names_its_road_are_on_it(road: str, tmp_path: Path) -> None:
+    test = f'[[test]]\nid = "cut-in"\nformula = "scenario_1(SV,POV,L)"\n{road}\n'
+    (tmp_path / "catalogue.toml").write_text(test, "utf-8")
+    found = catalogue(tmp_path, among="1,9", classes=False, drivers=(), jobs=1)
+    facts = {x.other: x for x in found.view.facts}
+    assert facts["scenario_1"].relation == "implies"
+    assert (facts["scenario_9"].relation == "shows") is not bool(road)
+    roads = {x.drive.file.road.name for x in facts.values() if x.drive is not None}
+    assert (roads == {"main-2"}) is bool(road)
+
+
 @pytest.fixture(scope="module")
 def meant(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("abstract")
@@ -388,7 +407,7 @@ def meant(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_answers_about_formulas_are_kept_and_checked(meant: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert main(["check", str(meant / "report"), "--jobs", "1"]) == 0
-    monkeypatch.setattr(Engines, "settle", lambda *_: pytest.fail("it is kept"))
+    monkeypatch.setattr(Engines, "answer_claim", lambda *_: pytest.fail("it is kept"))
     again = catalogue(meant, among="3-4", classes=False, drivers=(), jobs=1, out=meant / "report")
     assert len(again.evidence) == 12  # one test does not imply another
 
@@ -396,19 +415,19 @@ def test_answers_about_formulas_are_kept_and_checked(meant: Path, monkeypatch: p
 def test_a_doubt_is_a_doubt(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "catalogue.toml").write_text("[[test]]\nid='x'\nformula='scenario_4(SV,POV,L)'\n", "utf-8")
 
-    def lost(engines: Engines, claim: Claim, proposed: object) -> tuple[Answer, Cost]:
-        return undecided(claim, Why.TOLD("its process was ended")), NO_COST
+    def lost(engines: Engines, claim: Claim, proposed: object) -> tuple[ClaimAnswer, Cost]:
+        return undecided(claim, ReasonKind.TOLD("its process was ended")), NO_COST
 
-    monkeypatch.setattr(Engines, "settle", lost)
+    monkeypatch.setattr(Engines, "answer_claim", lost)
     found = catalogue(tmp_path, among="4", classes=False, jobs=1)
     assert found.exit_code == 20
     assert "whether it can be run is in doubt: its process was ended" in str(found)
 
 
-def test_other_values_of_parameters_are_told(asked: Questions) -> None:
-    calm = Questions(HOME.alone, NUMBERS, None, {**asked.values, "rho": Fraction(3)})
-    answer = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), calm, FIXED)
-    found = tested.tested(calm, [answer], [], [], tested.targets_of(calm), 0.5, None)
+def test_other_values_of_parameters_are_told(asked: TargetFormulas) -> None:
+    calm = TargetFormulas(HOME.alone, NUMBERS, None, {**asked.values, "rho": Fraction(3)})
+    answer = judge_test(ConcreteTest("x", str(EXAMPLE / "drives" / "braking.json")), calm, FIXED)
+    found = find_targets(calm, [answer], [], [], target_titles(calm), 0.5, None)
     (fault,) = found.faults
     assert fault.told.startswith(
         "claims scenario_4, and shows no scenario; its file has other values of rho than are asked for; "
@@ -443,7 +462,7 @@ def test_what_is_no_test_is_counted(tmp_path: Path) -> None:
     assert "2 more files" in found.notes[0]
 
 
-def test_vehicles_of_scenarios_are_known(asked: Questions) -> None:
+def test_vehicles_of_scenarios_are_known(asked: TargetFormulas) -> None:
     assert {*asked.roles} == {vehicles_of(HOME.alone, Scenario(n, "base")) for n in NUMBERS}
 
 

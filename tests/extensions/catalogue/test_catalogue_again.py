@@ -14,19 +14,21 @@ import roadproof as rp
 from roadproof.errors import InputError
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.subject import SubjectKind
+from roadproof.extensions.assurance.folder_view import folder_data
 from roadproof.extensions.catalogue import traces
-from roadproof.extensions.catalogue.asked import Questions
-from roadproof.extensions.catalogue.entries import Concrete, Freedom
-from roadproof.extensions.catalogue.kept import KeptRequest
-from roadproof.extensions.catalogue.playing import choices
-from roadproof.extensions.catalogue.showing import ConcreteAnswer, show
-from roadproof.extensions.catalogue.traces import courses_of, digest_of, roles_in
+from roadproof.extensions.catalogue.catalogue_data import RequestData
+from roadproof.extensions.catalogue.concrete_answer import ConcreteAnswer
+from roadproof.extensions.catalogue.curves import curves_of
+from roadproof.extensions.catalogue.entries import ConcreteTest, Freedom
+from roadproof.extensions.catalogue.judge_test import judge_test
+from roadproof.extensions.catalogue.role_choices import role_choices
+from roadproof.extensions.catalogue.target_formulas import TargetFormulas
+from roadproof.extensions.catalogue.traces import digest_of, roles_in
+from roadproof.extensions.pages.command_lines import command_line
 from roadproof.extensions.pages.page.catalogues import as_settings
 from roadproof.extensions.traffic.evaluate.one_trace import read_pair, read_samples
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.settings.flags import command_line
-from roadproof.questions.views import folder_data
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.verdict import ExitCode
 
 pytestmark = pytest.mark.usefixtures("searched_once")
@@ -107,7 +109,7 @@ def test_stale_tests_are_named(home: Path, capsys: pytest.CaptureFixture[str]) -
     [stale] = [x for x in rp.check(home / "report", jobs=1).findings if x.name == "LEAD"]
     assert (stale.subject, stale.reason.kind, stale.outcome) == (
         SubjectKind.TEST,
-        Why.FILE_CHANGED,
+        ReasonKind.FILE_CHANGED,
         Acceptance.REJECTED,
     )
 
@@ -149,7 +151,7 @@ def test_answers_among_the_tests_are_no_tests(home: Path) -> None:
 def test_the_command_asks_the_same(home: Path) -> None:
     request = folder_data(home / "report")["request"]
     assert request["paths"] == [str(home / "tests")]
-    asked = KeptRequest(**{k: tuple(x) if isinstance(x, list) else x for k, x in request.items()})
+    asked = RequestData(**{k: tuple(x) if isinstance(x, list) else x for k, x in request.items()})
     command = command_line("catalogue", asked.paths, as_settings(asked))
     assert command == f"roadproof catalogue {home / 'tests'} --no-classes --drivers careful,rss"
 
@@ -269,8 +271,8 @@ PAIRS, TRIPLES = ("SV", "POV"), ("SV", "POV1", "POV2")
 
 
 @pytest.fixture(scope="module")
-def asked() -> Questions:
-    return Questions(HOME.alone, (1, 2, 3, 4), None, HOME.all_values())
+def asked() -> TargetFormulas:
+    return TargetFormulas(HOME.alone, (1, 2, 3, 4), None, HOME.all_values())
 
 
 def renamed(path: Path, drive: str, names: Mapping[str, str]) -> Path:
@@ -290,8 +292,8 @@ def sampled(folder: Path, names: Mapping[str, str]) -> Path:
     return folder / "a.csv"
 
 
-def looked_at(asked: Questions, path: Path, free: bool = False, **roles: str) -> ConcreteAnswer:
-    return show(Concrete("x", str(path), roles=roles), asked, Freedom(roles=free))
+def looked_at(asked: TargetFormulas, path: Path, free: bool = False, **roles: str) -> ConcreteAnswer:
+    return judge_test(ConcreteTest("x", str(path), roles=roles), asked, Freedom(roles=free))
 
 
 @pytest.mark.parametrize(
@@ -317,32 +319,32 @@ def looked_at(asked: Questions, path: Path, free: bool = False, **roles: str) ->
     ],
 )
 def test_names_and_roles(vehicles: list[str], given: dict[str, str], expected: dict[str, str]) -> None:
-    assert roles_in(Concrete("x", "x.csv", roles=given), vehicles, KNOWN).by_name == expected
+    assert roles_in(ConcreteTest("x", "x.csv", roles=given), vehicles, KNOWN).by_name == expected
 
 
 def test_choices_keep_who_is_named() -> None:
     """All roles named, some, none; and any where it is asked for."""
     both = (PAIRS, TRIPLES)
-    assert [*choices(both, both, ["SV", "POV", "x"], False)] == [(PAIRS, PAIRS)]
-    assert [*choices(both, both, ["a", "SV", "b"], False)] == [
+    assert [*role_choices(both, both, ["SV", "POV", "x"], False)] == [(PAIRS, PAIRS)]
+    assert [*role_choices(both, both, ["a", "SV", "b"], False)] == [
         (PAIRS, ("SV", "a")),
         (PAIRS, ("SV", "b")),
         (TRIPLES, ("SV", "a", "b")),
         (TRIPLES, ("SV", "b", "a")),
     ]
-    assert [*choices(both, both, ["a", "b"], False)] == []
-    assert [*choices((PAIRS,), both, TRIPLES, False, any_way=True)] == []
-    assert [*choices((PAIRS,), both, ["a", "b"], False, any_way=True)] == [
+    assert [*role_choices(both, both, ["a", "b"], False)] == []
+    assert [*role_choices((PAIRS,), both, TRIPLES, False, any_way=True)] == []
+    assert [*role_choices((PAIRS,), both, ["a", "b"], False, any_way=True)] == [
         (PAIRS, ("a", "b")),
         (PAIRS, ("b", "a")),
     ]
-    assert [*choices((PAIRS,), both, PAIRS, True)] == [(PAIRS, PAIRS), (PAIRS, PAIRS[::-1])]
+    assert [*role_choices((PAIRS,), both, PAIRS, True)] == [(PAIRS, PAIRS), (PAIRS, PAIRS[::-1])]
 
 
 @pytest.mark.parametrize("drive", ["braking", "cut-in", "cut-out"])
-def test_other_names_show_the_same(drive: str, asked: Questions, tmp_path: Path) -> None:
+def test_other_names_show_the_same(drive: str, asked: TargetFormulas, tmp_path: Path) -> None:
     """With roles as the test says, all that is told is the same, in the names of the test."""
-    original = show(Concrete("x", str(EXAMPLE / "drives" / f"{drive}.json")), asked, Freedom())
+    original = judge_test(ConcreteTest("x", str(EXAMPLE / "drives" / f"{drive}.json")), asked, Freedom())
     names = {"SV": "ego", "POV": "blue", "POV1": "one", "POV2": "two"}
     given = {
         role: name for role, name in names.items() if (role == "POV") is (drive != "cut-out") or role == "SV"
@@ -357,7 +359,7 @@ def test_other_names_show_the_same(drive: str, asked: Questions, tmp_path: Path)
     assert not any("taken as" in note for note in found.notes)
 
 
-def test_usual_names_are_told(asked: Questions, tmp_path: Path) -> None:
+def test_usual_names_are_told(asked: TargetFormulas, tmp_path: Path) -> None:
     names = {"SV": "Ego", "POV": "lead"}
     for path in (renamed(tmp_path / "b.json", "braking", names), sampled(tmp_path, names)):
         found = looked_at(asked, path)
@@ -365,12 +367,12 @@ def test_usual_names_are_told(asked: Questions, tmp_path: Path) -> None:
         assert {x.vehicles for x in found.shown} == {("Ego", "lead")}
         assert found.roles == {"SV": "Ego", "POV": "lead"}
         assert "Ego is taken as SV, lead is taken as POV" in found.notes
-        courses = courses_of(found.entry)
-        assert courses is not None
-        assert [*courses.vehicles] == ["SV", "POV"]
+        curves = curves_of(found.entry)
+        assert curves is not None
+        assert [*curves.vehicles] == ["SV", "POV"]
 
 
-def test_roles_decide_what_is_shown(asked: Questions, tmp_path: Path) -> None:
+def test_roles_decide_what_is_shown(asked: TargetFormulas, tmp_path: Path) -> None:
     """Exchanged roles show something else, in drives and in samples, unless any roles are looked at."""
     names = {"SV": "ego", "POV": "lead"}
     for path in (renamed(tmp_path / "b.json", "braking", names), sampled(tmp_path, names)):
@@ -380,7 +382,7 @@ def test_roles_decide_what_is_shown(asked: Questions, tmp_path: Path) -> None:
         assert ("scenario_4", ("ego", "lead")) in {(x.what, x.vehicles) for x in free.shown}
 
 
-def test_the_vehicle_under_test_among_several(asked: Questions, tmp_path: Path) -> None:
+def test_the_vehicle_under_test_among_several(asked: TargetFormulas, tmp_path: Path) -> None:
     """Of three vehicles with one usual name the others may play any role, and it is always SV."""
     names = {"SV": "ego", "POV1": "near", "POV2": "far"}
     found = looked_at(asked, renamed(tmp_path / "a.json", "cut-out", names))
@@ -388,13 +390,13 @@ def test_the_vehicle_under_test_among_several(asked: Questions, tmp_path: Path) 
     assert {x.vehicles[0] for x in found.shown} == {"ego"}
 
 
-def test_names_that_are_no_roles_are_noted(asked: Questions, tmp_path: Path) -> None:
+def test_names_that_are_no_roles_are_noted(asked: TargetFormulas, tmp_path: Path) -> None:
     found = looked_at(asked, renamed(tmp_path / "a.json", "braking", {"SV": "red", "POV": "blue"}))
     assert found.shown == ()
     assert any("no vehicle is called as a role" in note and "red, blue" in note for note in found.notes)
 
 
-def test_obstacles_play_roles_by_number(asked: Questions) -> None:
+def test_obstacles_play_roles_by_number(asked: TargetFormulas) -> None:
     path = EXAMPLE / "samples" / "cut-in.xml"
     right, turned = looked_at(asked, path, SV="1", POV="2"), looked_at(asked, path, SV="2", POV="1")
     assert {x.vehicles for x in right.shown} == {("1", "2")}
@@ -414,8 +416,10 @@ def test_obstacles_play_roles_by_number(asked: Questions) -> None:
         ("samples/cut-in.xml:1,2", {"SV": "1"}, "the order of the vehicles says their roles"),
     ],
 )
-def test_unknown_names_are_a_fault(name: str, roles: dict[str, str], told: str, asked: Questions) -> None:
-    found = show(Concrete("x", str(EXAMPLE / name), roles=roles), asked, Freedom())
+def test_unknown_names_are_a_fault(
+    name: str, roles: dict[str, str], told: str, asked: TargetFormulas
+) -> None:
+    found = judge_test(ConcreteTest("x", str(EXAMPLE / name), roles=roles), asked, Freedom())
     assert found.shown == ()
     assert found.fault.startswith(f"{EXAMPLE / name}: roles")
     assert told in found.fault
@@ -456,7 +460,7 @@ def test_choices_of_obstacles(
     frames = {"first_frame": [0] * 3, "last_frame": [9] * 3, "direction": [0] * 3}
     recording: Any = SimpleNamespace(vehicles=3, vehicle_id=[11, 12, 13], **frames)
     monkeypatch.setattr(traces, "cut_trace", lambda recording, place, vehicles, frames: vehicles)
-    entry = Concrete("x", "a.xml", roles=given)
+    entry = ConcreteTest("x", "a.xml", roles=given)
     assert [tuple(told.values()) for _, told in traces._all_of(recording, entry, KNOWN)] == expected
     monkeypatch.setattr(traces, "MOST_VEHICLES", 2)
     if len(expected) == 1:

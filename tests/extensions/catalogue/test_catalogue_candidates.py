@@ -7,35 +7,36 @@ import pytest
 
 import roadproof as rp
 from roadproof.engines.search.batches import Engines
-from roadproof.evidence.answer import Answer
+from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.judged import JudgedDrive, judge_file
-from roadproof.extensions.catalogue import abstract
-from roadproof.extensions.catalogue.asked import Questions
+from roadproof.extensions.catalogue import abstract_claims
 from roadproof.extensions.catalogue.candidates import CandidateDrives, candidates
-from roadproof.extensions.catalogue.entries import Abstract
+from roadproof.extensions.catalogue.entries import AbstractTest
+from roadproof.extensions.catalogue.target_formulas import TargetFormulas
+from roadproof.extensions.surveys.survey import replay_steps
 from roadproof.library.scenarios import name_of
 from roadproof.questions.basis import Basis
-from roadproof.questions.question import seen, walk
-from roadproof.runtime.archives import archived
+from roadproof.questions.question import walk_batch
+from roadproof.runtime.archives import shipped_answers
 from roadproof.runtime.budget import Effort, Work
 from roadproof.verdict import Verdict
 from roadproof.world.models import load_road, load_vehicle
 
 pytestmark = pytest.mark.usefixtures("searched_once")
-SHIPPED = pytest.mark.skipif(not archived("classify"), reason="no answers of classify are shipped")
+SHIPPED = pytest.mark.skipif(not shipped_answers("classify"), reason="no answers of classify are shipped")
 
 HOME = rp.load()
 BASIS = Basis(HOME.alone)
 NUMBERS = (1, 4, 6, 8)
-ASKED = Questions(HOME.alone, NUMBERS, None, HOME.all_values())
+ASKED = TargetFormulas(HOME.alone, NUMBERS, None, HOME.all_values())
 SLOW = "scenario_4(SV,POV,L) and v_lon(SV) >= 14 m/s and v_lon(SV) <= 20 m/s"
 """Shipped drives are faster."""
 QUERIES = ASKED.scenarios_of(("SV", "POV"))
 
 
-def entry(formula: str = SLOW) -> Abstract:
-    return Abstract("T", HOME.read(formula))
+def entry(formula: str = SLOW) -> AbstractTest:
+    return AbstractTest("T", HOME.read(formula))
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +46,7 @@ def drive() -> JudgedDrive:
     return found
 
 
-def found_for(test: Abstract, drive: JudgedDrive, name: str = "scenario_6") -> JudgedDrive | None:
+def found_for(test: AbstractTest, drive: JudgedDrive, name: str = "scenario_6") -> JudgedDrive | None:
     return CandidateDrives(BASIS, test, drive, ("scenario_4",)).find(name, QUERIES[name])
 
 
@@ -74,7 +75,7 @@ def test_a_shipped_drive_is_moved_to_the_speed_of_the_test(drive: JudgedDrive) -
         entry("given M: lane: scenario_4(SV,POV,M)"),
     ],
 )
-def test_a_drive_that_is_none_of_the_test_is_not_taken(changed: Abstract, drive: JudgedDrive) -> None:
+def test_a_drive_that_is_none_of_the_test_is_not_taken(changed: AbstractTest, drive: JudgedDrive) -> None:
     assert found_for(changed, drive) is None
 
 
@@ -92,18 +93,18 @@ def relations(without: bool, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[
     def none(drives: CandidateDrives, name: str, query: object) -> None:
         return None
 
-    batch, known = abstract.TestBatch(BASIS, ASKED, entry()), dict[str, Answer]()
+    batch, known = abstract_claims.TestBatch(BASIS, ASKED, entry()), dict[str, ClaimAnswer]()
     engines = Engines(Work(Effort(), 3.0, explain=True))
 
-    def find(name: str, claim: Claim) -> Answer:
-        known[name] = engines.settle(claim, batch.proposed(name, known))[0]
+    def find(name: str, claim: Claim) -> ClaimAnswer:
+        known[name] = engines.answer_claim(claim, batch.proposed(name, known))[0]
         return known[name]
 
     with monkeypatch.context() as patched:
         if without:
             patched.setattr(CandidateDrives, "find", none)
-        [*walk(batch, find)]
-    for fact in seen(batch.facts(), known):
+        [*walk_batch(batch, find)]
+    for fact in replay_steps(batch.facts(), known):
         assert (fact.drive is None) == (fact.verdict is Verdict.PROVED)
         yield fact.other, fact.relation
 
@@ -115,10 +116,10 @@ def test_a_test_means_the_same_without_shipped_drives(monkeypatch: pytest.Monkey
 
 
 def test_a_proposed_drive_is_judged_for_the_claim(drive: JudgedDrive) -> None:
-    batch = abstract.TestBatch(BASIS, ASKED, entry())
+    batch = abstract_claims.TestBatch(BASIS, ASKED, entry())
     engines = Engines(Work(Effort(), 3.0))
-    shown = engines.settle(batch.exists(QUERIES["scenario_4"]), [drive])[0]
+    shown = engines.answer_claim(batch.exists(QUERIES["scenario_4"]), [drive])[0]
     assert shown.drive is not None
     assert shown.drive.file.drive == drive.file.drive
     never = batch.exists(HOME.read("scenario_1(SV,POV,L) and scenario_4(SV,POV,L)"))
-    assert engines.settle(never, [drive])[0].verdict is Verdict.IMPOSSIBLE
+    assert engines.answer_claim(never, [drive])[0].verdict is Verdict.IMPOSSIBLE

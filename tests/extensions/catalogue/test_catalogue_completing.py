@@ -14,37 +14,37 @@ import pytest
 import roadproof as rp
 from cli.test_schemas import validator
 from roadproof.errors import UsageError
-from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.answer import ClaimAnswer, undecided
 from roadproof.evidence.drive_file import load_drive
-from roadproof.extensions.catalogue import abstract, completing, gaps, ranges, tested
+from roadproof.extensions.catalogue import abstract_claims, gaps, initial_values, ranges
 from roadproof.extensions.catalogue import report_drives as catalogue_drives
-from roadproof.extensions.catalogue.asked import Questions, ScenarioQuestion
+from roadproof.extensions.catalogue.catalogue_data import NearestScenario
 from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer, catalogue
 from roadproof.extensions.catalogue.completing import complete
-from roadproof.extensions.catalogue.entries import Abstract, Concrete, Freedom
-from roadproof.extensions.catalogue.fact import Fact
+from roadproof.extensions.catalogue.curves import curves_of
+from roadproof.extensions.catalogue.entries import AbstractTest, ConcreteTest, Freedom
+from roadproof.extensions.catalogue.fact import CatalogueFact
+from roadproof.extensions.catalogue.false_parts import first_false_part
 from roadproof.extensions.catalogue.gaps import NO_SINGLE
-from roadproof.extensions.catalogue.kept import Why
-from roadproof.extensions.catalogue.nearest import first_false_part
+from roadproof.extensions.catalogue.judge_test import judge_test
+from roadproof.extensions.catalogue.nearest_scenario import VehicleMotions, nearest_scenario
 from roadproof.extensions.catalogue.ranges import Reach
-from roadproof.extensions.catalogue.report_drives import DrivePicture, draw_tests
-from roadproof.extensions.catalogue.showing import ENDANGERED, GAP, show
-from roadproof.extensions.catalogue.traces import courses_of
-from roadproof.extensions.catalogue.why import Course, why_none
-from roadproof.extensions.surveys.coverage import asking as coverage_asking
-from roadproof.extensions.surveys.coverage import found
+from roadproof.extensions.catalogue.report_drives import DrivePicture, draw_tests, shorten
+from roadproof.extensions.catalogue.target_formulas import ENDANGERED, GAP, ScenarioKey, TargetFormulas
+from roadproof.extensions.catalogue.targets import find_targets, target_titles
+from roadproof.extensions.surveys.coverage import gap_drives, gap_search
 from roadproof.extensions.surveys.coverage import question as coverage_question
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer
 from roadproof.extensions.surveys.coverage.classes import near_miss
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.figures import as_bytes, make_page, shorten
+from roadproof.frontends.report.figures import as_bytes, make_page
 from roadproof.library.bind import bind, values_with
-from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
+from roadproof.library.scenarios import Scenario, apply_scenario, name_of, vehicles_of
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.questions.basis import Basis
-from roadproof.reasons import Why as Texts
-from roadproof.semantics.exact.exact import DriveJudge, judge
+from roadproof.reasons import ReasonKind
+from roadproof.semantics.exact.judging import DriveJudge, judge
 from roadproof.semantics.exact.signals import DriveSignals
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Piece
@@ -62,20 +62,20 @@ def behaviourPOV_4(POV, SV: vehicle, L: lane) "POV drives away, and stands"
 """
 
 
-def asked_about(*numbers: int) -> Questions:
-    return Questions(HOME.specification, numbers, None, HOME.all_values())
+def asked_about(*numbers: int) -> TargetFormulas:
+    return TargetFormulas(HOME.specification, numbers, None, HOME.all_values())
 
 
 # --- gaps ---------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
-def asked() -> Questions:
+def asked() -> TargetFormulas:
     return asked_about(1)
 
 
 @pytest.mark.parametrize("path", [BRAKING, SEVEN, CUT_IN], ids=lambda path: path.stem)
-def test_classes_of_a_gap_are_those_of_the_judge_one_by_one(path: Path, asked: Questions) -> None:
+def test_classes_of_a_gap_are_those_of_the_judge_one_by_one(path: Path, asked: TargetFormulas) -> None:
     """Each part that can be left out so that its scenario holds, asked by itself."""
     assert asked.gaps is not None
     file, expected = load_drive(path), set()
@@ -85,11 +85,11 @@ def test_classes_of_a_gap_are_those_of_the_judge_one_by_one(path: Path, asked: Q
             and judge(bind(near_miss(part).formula, file.road, {}, asked.values), file.drive).holds
         ):
             expected.add(name)
-    names = show(Concrete("x", str(path)), asked, Freedom()).names
+    names = judge_test(ConcreteTest("x", str(path)), asked, Freedom()).names
     alone = {NO_SINGLE} if not expected else set()
     shown = {name for name in names if name.startswith(gaps.PREFIX)}
     assert shown == (expected | alone if GAP in names else set())
-    missed = bind(asked.gaps.classes.missed((1,)).formula, file.road, {}, asked.values)
+    missed = bind(asked.gaps.classes.gap_formula((1,)).formula, file.road, {}, asked.values)
     assert (GAP in names) == judge(missed, file.drive).holds
 
 
@@ -104,13 +104,13 @@ def test_scenarios_that_are_no_rows_have_no_classes_of_gaps() -> None:
 @pytest.fixture(scope="module")
 def surveyed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[CatalogueAnswer, Path]]:
     """A cut-in, asked about scenario 4 and its gaps, with few drives to look through and little work."""
-    simple, folder = found.simple_drives, tmp_path_factory.mktemp("gaps")
+    simple, folder = gap_drives.simple_drives, tmp_path_factory.mktemp("gaps")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(found, "simple_drives", lambda road, car: islice(simple(road, car), 0, None, 60))
+        patch.setattr(gap_drives, "simple_drives", lambda road, car: islice(simple(road, car), 0, None, 60))
         patch.setattr(gaps, "ROADS", ("main-2",))
         patch.setattr(coverage_question, "CHUNKS", 1)
-        patch.setattr(coverage_asking, "PROOF", 1.0)
-        patch.setattr(coverage_asking, "LONG_PROOF", 2.0)
+        patch.setattr(gap_search, "PROOF", 1.0)
+        patch.setattr(gap_search, "LONG_PROOF", 2.0)
         report = folder / "report"
         made = catalogue(CUT_IN, among="4", classes=False, gaps=True, effort=3, jobs=1, out=report)
         made.add_files(False)
@@ -153,12 +153,12 @@ def test_gaps_that_nobody_tests_are_made_and_found_again(surveyed: tuple[Catalog
     assert main(["check", str(folder / "more"), "--jobs", "1"]) == 0
 
 
-def test_a_gap_that_is_proved_empty_and_shown_is_a_contradiction(asked: Questions) -> None:
-    answer = show(Concrete("x", str(BRAKING)), asked, Freedom())
+def test_a_gap_that_is_proved_empty_and_shown_is_a_contradiction(asked: TargetFormulas) -> None:
+    answer = judge_test(ConcreteTest("x", str(BRAKING)), asked, Freedom())
     assert asked.gaps is not None
     name = next(x for x in sorted(answer.names) if x.startswith(gaps.PREFIX))
     empty = {name: ClassAnswer(asked.gaps.parts[name], verdict=Verdict.IMPOSSIBLE)}
-    made = tested.tested(asked, [answer], [], [], tested.targets_of(asked), 0.5, empty)
+    made = find_targets(asked, [answer], [], [], target_titles(asked), 0.5, empty)
     assert [x.told for x in made.contradictions] == [f"shows {name}, though that is proved to be empty"]
 
 
@@ -171,8 +171,8 @@ def test_figures_by_spec_set() -> None:
     counted = {x.set_name: (x.kind, x.tested, x.total) for x in made.figures}
     assert counted == {"base": ("scenarios", 1, 2), "ext": ("scenarios", 1, 2)}
     assert "set ext, scenarios: 1 of 2 are tested" in str(made)
-    for other, (answer,) in zip(made.view.questions, made.view.shown, strict=True):
-        assert answer.names == show(Concrete("braking", str(BRAKING)), other, Freedom()).names
+    for other, (answer,) in zip(made.view.formula_sets, made.view.shown, strict=True):
+        assert answer.names == judge_test(ConcreteTest("braking", str(BRAKING)), other, Freedom()).names
 
 
 def test_drives_far_apart_with_copies_for_other_tools(tmp_path: Path) -> None:
@@ -183,7 +183,7 @@ def test_drives_far_apart_with_copies_for_other_tools(tmp_path: Path) -> None:
     (one,) = completed.completions
     assert (one.name, one.target) == ("scenario_4-2", "scenario_4")
     assert one.apart is not None
-    assert one.apart >= float(completing.FACTORS[-1])
+    assert one.apart >= float(initial_values.FACTORS[-1])
     entries = tomllib.loads((more / "catalogue.toml").read_text("utf-8"))["test"]
     copies = {"as commonroad", "as csv", "as highd", "as openscenario"}
     assert {x["id"].removeprefix("scenario_4-2").strip() for x in entries} == {"", *copies}
@@ -192,6 +192,15 @@ def test_drives_far_apart_with_copies_for_other_tools(tmp_path: Path) -> None:
     assert (again.missing, again.tested.faults, again.tested.alike, again.exit_code) == ((), (), (), 0)
     assert [x.tested for x in again.tested.targets] == [("braking", *(x["id"] for x in entries))]
     assert str(again.complete(more, spread=2, jobs=1)) == "nothing was missing"
+
+
+def test_a_drive_for_a_class_lists_the_parameters_of_its_formula(tmp_path: Path) -> None:
+    home = rp.load(specs=["driver"])
+    catalogue(CUT_IN, using=home, among="8", drivers=(), jobs=1).complete(tmp_path / "more", jobs=1)
+    [file] = (tmp_path / "more").glob("class_8*.json")
+    values = load_drive(file).values
+    assert {"rho", "minSafe"} <= {*values}
+    assert "cc_delay" not in values
 
 
 def test_what_is_written_before_is_kept(tmp_path: Path) -> None:
@@ -206,9 +215,9 @@ def test_what_is_written_before_is_kept(tmp_path: Path) -> None:
 
 def test_distance_is_that_of_the_number_that_differs_most() -> None:
     one = {"v_lon(SV)": 20.0, "s(POV) - s(SV)": 30.0, "d(POV) - d(SV)": 0.0}
-    assert completing.distance(one, one) == 0
-    assert completing.distance(one, {**one, "v_lon(SV)": 28.0, "s(POV) - s(SV)": 45.0}) == 2
-    query = completing.far_from([one], Fraction(2), HOME.specification)
+    assert initial_values.distance(one, one) == 0
+    assert initial_values.distance(one, {**one, "v_lon(SV)": 28.0, "s(POV) - s(SV)": 45.0}) == 2
+    query = initial_values.far_from([one], Fraction(2), HOME.specification)
     assert query is not None
     assert query.text.startswith("v_lon(SV) - 28*1 m/s >= 0 m/s or 12*1 m/s - v_lon(SV) >= 0 m/s or ")
 
@@ -239,14 +248,14 @@ def test_the_part_of_a_range_that_nobody_tests(tmp_path: Path, monkeypatch: pyte
 
 def test_a_range_that_is_not_known_is_a_doubt() -> None:
     asked = asked_about(4)
-    still_open = Fact(
+    still_open = CatalogueFact(
         "", "scenario_4", "open", asked.query_of("scenario_4"), reason="cut off", term="v_lon(SV)"
     )
-    made = tested.tested(asked, [], [], [still_open], tested.targets_of(asked), 0.5, None)
+    made = find_targets(asked, [], [], [still_open], target_titles(asked), 0.5, None)
     assert [(x.tests, x.told) for x in made.doubts] == [
         (("scenario_4",), "how far its drives go is in doubt: cut off")
     ]
-    assert ranges.spans_of(HOME.specification, {"scenario_4": {"v_lon(SV)": (1, 2)}}, [still_open]) == []
+    assert ranges.ranges_of(HOME.specification, {"scenario_4": {"v_lon(SV)": (1, 2)}}, [still_open]) == []
 
 
 # --- pictures -------------------------------------------------------------------------------------
@@ -254,10 +263,10 @@ def test_a_range_that_is_not_known_is_a_doubt() -> None:
 
 def test_all_tests_are_drawn_on_pages_and_titles_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(catalogue_drives, "MOST_ON_A_PAGE", 2)
-    courses = courses_of(Concrete("x", str(CUT_IN)))
-    assert courses is not None
-    assert courses_of(Concrete("x", str(DRIVES / "torn.json"))) is None
-    pages = list(draw_tests([DrivePicture("W" * 60, "1 cut-in", courses)] * 3))
+    curves = curves_of(ConcreteTest("x", str(CUT_IN)))
+    assert curves is not None
+    assert curves_of(ConcreteTest("x", str(DRIVES / "torn.json"))) is None
+    pages = list(draw_tests([DrivePicture("W" * 60, "1 cut-in", curves)] * 3))
     assert [as_bytes(page)["png"][:4] for page in pages] == [b"\x89PNG"] * 2
     text = make_page(4, 4).text(0, 0, "W" * 60, fontsize=6.5)
     shorten(text, 1.9)
@@ -312,7 +321,7 @@ def test_a_motorcycle_is_one_for_commonroad(tmp_path: Path) -> None:
 def test_only_drives_that_are_of_a_target_from_their_start_seed_its_range() -> None:
     """A test that shows a class later on is none of its drives from the start."""
     asked = asked_about(1, 4)
-    lies = show(Concrete("braking", str(BRAKING)), asked, Freedom())
+    lies = judge_test(ConcreteTest("braking", str(BRAKING)), asked, Freedom())
     begins = {"v_lon(SV)": (lies.begins["v_lon(SV)"],) * 2}
     found = {x: [*ranges.reaches_of(asked, {x: begins}, [lies])] for x in ("scenario_1", "scenario_4")}
     assert [len(x.known) for x in found["scenario_4"]] == [1]
@@ -324,7 +333,10 @@ def test_a_scenario_without_drives_has_a_proof(tmp_path: Path) -> None:
     (tmp_path / "never.spec").write_text(NEVER, "utf-8")
     home = rp.load(specs=[tmp_path / "never.spec"]).specification
     [made] = complete(
-        Basis(home), Questions(home, (4,), None, values_with(home.library, {})), ["scenario_4"], hands=1
+        Basis(home),
+        TargetFormulas(home, (4,), None, values_with(home.library, {})),
+        ["scenario_4"],
+        executor=1,
     )
     assert made.drive is None
     assert made.empty is not None
@@ -334,15 +346,15 @@ def test_a_scenario_without_drives_has_a_proof(tmp_path: Path) -> None:
 def test_a_test_without_a_drive_says_why(said: str, told: str) -> None:
     asked = asked_about(1)
     query = asked.query_of("scenario_1")
-    batch = abstract.TestBatch(Basis(HOME.specification), asked, Abstract("x", query))
-    for steps in (batch.facts(), batch._shown("scenario_1", query)):
+    batch = abstract_claims.TestBatch(Basis(HOME.specification), asked, AbstractTest("x", query))
+    for steps in (batch.facts(), batch._decide_shows("scenario_1", query)):
         name, claim = next(steps)
-        found = seen_with(steps, undecided(claim, Texts.TOLD(said)))
+        found = seen_with(steps, undecided(claim, ReasonKind.TOLD(said)))
         for fact in found if isinstance(found, tuple) else (found,):
             assert (fact.relation, fact.reason, fact.name) == ("open", told, name)
 
 
-def seen_with(steps: Any, answer: Answer) -> Any:
+def seen_with(steps: Any, answer: ClaimAnswer) -> Any:
     """What is said after one answer."""
     with pytest.raises(StopIteration) as end:
         steps.send(answer)
@@ -354,10 +366,12 @@ def seen_with(steps: Any, answer: Answer) -> Any:
 FILE = load_drive(Path(__file__).parents[3] / "examples" / "catalogue" / "tests" / "drives" / "lead.json")
 NUMBERS = tuple(range(1, 9))
 ROLES = ((("SV", "POV"), ("SV", "POV")),)
-ASKED = Questions(HOME.alone, NUMBERS, None, HOME.all_values())
+ASKED = TargetFormulas(HOME.alone, NUMBERS, None, HOME.all_values())
 
 
-def pair(speed: Fraction, other: Fraction, gap: Fraction, braking: Fraction, begin: Fraction) -> Course:
+def pair(
+    speed: Fraction, other: Fraction, gap: Fraction, braking: Fraction, begin: Fraction
+) -> VehicleMotions:
     """POV ahead of SV in its lane; it brakes from ``begin`` to a stand."""
     lane = FILE.drive.vehicles["SV"]
     steady = Piece(None, Fraction(0), Fraction(0))
@@ -369,12 +383,12 @@ def pair(speed: Fraction, other: Fraction, gap: Fraction, braking: Fraction, beg
     )
     ahead = replace(behind, s=gap + behind.length, v_lon=other, pieces=pieces)
     drive = Drive({"SV": behind, "POV": ahead})
-    return Course(DriveSignals(drive), FILE.road, Fraction(10), ROLES, (FILE.lanes["L"],))
+    return VehicleMotions(DriveSignals(drive), FILE.road, Fraction(10), ROLES, (FILE.lanes["L"],))
 
 
-def why(*numbers: int | str) -> Why | None:
+def why(*numbers: int | str) -> NearestScenario | None:
     speed, other, gap, braking, begin = map(Fraction, numbers)
-    return why_none(pair(speed, other, gap, braking, begin), ASKED)
+    return nearest_scenario(pair(speed, other, gap, braking, begin), ASKED)
 
 
 def test_equal_speeds_lack_a_slower_vehicle_ahead_and_count_in_another_set() -> None:
@@ -398,7 +412,12 @@ def test_the_sets_that_count_it_are_those_in_which_a_scenario_holds() -> None:
             for number in NUMBERS
             if vehicles_of(there, Scenario(number, name)) == ("SV", "POV")
             and judge(
-                bind(applied(there, Scenario(number, name)).formula, course.road, FILE.lanes, ASKED.values),
+                bind(
+                    apply_scenario(there, Scenario(number, name)).formula,
+                    course.road,
+                    FILE.lanes,
+                    ASKED.values,
+                ),
                 course.signals,
             ).holds
         }
@@ -418,7 +437,7 @@ def test_the_change_makes_the_part_true_and_less_does_not(seed: int) -> None:
     formulas = [
         formula
         for key, formula in ASKED.on(course.road, *ROLES[0], course.lanes[0]).items()
-        if isinstance(key, ScenarioQuestion)
+        if isinstance(key, ScenarioKey)
     ]
     for formula in formulas:
         part = first_false_part(formula, DriveJudge.on(course.signals), course.horizon)

@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.extensions.catalogue import driven
 from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
-from roadproof.extensions.catalogue.driven import borne_out, driven_name
+from roadproof.extensions.catalogue.driver_claims import confirmed_decision, driver_claim_name
 from roadproof.extensions.traffic.evaluate.decisions import Decision
 from roadproof.frontends.api.checking import check
 from roadproof.verdict import ExitCode, Verdict
@@ -32,7 +31,7 @@ def test_each_decision_about_a_drive_has_its_drive(folder: Path) -> None:
     found = ask()
     assert {x.side for _, x in found.decisions} >= {"preventable", "undecided"}
     for test, x in found.decisions:
-        answer = found.view.driven[driven_name(test, x)]
+        answer = found.view.driven[driver_claim_name(test, x)]
         assert answer.verdict is Verdict.WITNESSED
         assert answer.drive is not None
         formula = answer.drive.file.formula
@@ -47,7 +46,7 @@ def test_each_decision_about_a_drive_has_its_drive(folder: Path) -> None:
 def test_a_drive_that_is_not_accepted_leaves_its_decision_in_doubt(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("roadproof.engines.search.batches.given_drive", lambda *_: None)
+    monkeypatch.setattr("roadproof.engines.search.batches.drive_of_claim", lambda *_: None)
     found = ask()
     assert {x.side for _, x in found.decisions} == {"undecided"}
     assert {x.gap for _, x in found.decisions} == {None}
@@ -71,7 +70,7 @@ def test_a_drive_that_the_model_does_not_make_is_rejected(change: str, folder: P
     assert checked.exit_code is expected
     [view] = checked.views.values()
     assert isinstance(view, CatalogueAnswer)
-    sides = {driven_name(test, x): x.side for test, x in view.decisions}
+    sides = {driver_claim_name(test, x): x.side for test, x in view.decisions}
     assert sides[one.stem] == "undecided"
 
 
@@ -82,7 +81,7 @@ def test_two_drives_of_a_test_have_names_of_their_own() -> None:
         for vehicles in (("SV", "POV"), ("POV", "SV"))
         for model in ("careful", "rss")
     ]
-    names = {driven_name(test, x) for test in ("a", "b", "a b", "a-b") for x in every}
+    names = {driver_claim_name(test, x) for test in ("a", "b", "a b", "a-b") for x in every}
     assert len(names) == 4 * len(every)
-    assert borne_out("a", every[0], {}) is every[0]
-    assert driven.driven_name("a", every[0]).startswith("driven-test-a-")
+    assert confirmed_decision("a", every[0], {}) is every[0]
+    assert driver_claim_name("a", every[0]).startswith("driven-test-a-")

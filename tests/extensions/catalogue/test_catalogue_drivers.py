@@ -18,12 +18,14 @@ from extensions.drivers.read import specification, values
 from extensions.traffic.test_drivers import EACH, drives, questions_with
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
+from roadproof.extensions.assurance.folder_view import folder_data
+from roadproof.extensions.catalogue.catalogue_file import _fragments_alone
 from roadproof.extensions.catalogue.driver_sides import read_side_name
-from roadproof.extensions.catalogue.entries import Abstract, Concrete
-from roadproof.extensions.catalogue.listing import _by_itself
+from roadproof.extensions.catalogue.entries import AbstractTest, ConcreteTest
 from roadproof.extensions.catalogue.reading import read_catalogue
-from roadproof.extensions.drivers.driving import OWN_LANE, DriverSettings, drive_of, road_of
-from roadproof.extensions.drivers.initial_state import State
+from roadproof.extensions.drivers.driver_settings import DriverSettings
+from roadproof.extensions.drivers.driving import OWN_LANE, drive_of, road_of
+from roadproof.extensions.drivers.initial_state import InitialState
 from roadproof.extensions.drivers.lines import SIDES, Side
 from roadproof.extensions.drivers.manoeuvres import KMH, MANOEUVRES, signals_of
 from roadproof.extensions.drivers.models import MODELS, SCENARIOS
@@ -41,8 +43,7 @@ from roadproof.frontends.cli.main import main
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.questions.views import folder_data
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from roadproof.world.drive import Drive, Piece
 from tables import read_table
 
@@ -81,11 +82,11 @@ def test_decisions_are_those_of_evaluate(name: str, model: str, side: Side) -> N
     assert compared
 
 
-def state_of(name: str, at: dict[str, Fraction]) -> State:
+def state_of(name: str, at: dict[str, Fraction]) -> InitialState:
     kind = MANOEUVRES[name]
     full = kind.values(at)
     sizes = {(x, v): full[x] for x in ("length", "width") for v in kind.vehicles}
-    return State(signals_of(kind, full), sizes)
+    return InitialState(signals_of(kind, full), sizes)
 
 
 def random_values(name: str, random: Random) -> dict[str, Fraction]:
@@ -115,7 +116,7 @@ def test_a_vehicle_that_stands_has_no_headway() -> None:
     at = {"Ve0": Fraction(0), "Vf0": Fraction(3), "dx0_f": Fraction(20), "headway": Fraction(0)}
     start = {**kind.values({}), **at}
     sizes = {(x, v): start[x] for x in ("length", "width") for v in kind.vehicles}
-    found = State(signals_of(kind, start), sizes).values("cut-out", kind.vehicles)
+    found = InitialState(signals_of(kind, start), sizes).values("cut-out", kind.vehicles)
     assert {x: found[x] for x in at} == at
 
 
@@ -222,9 +223,9 @@ def test_danger_before_a_cut_out_is_that_of_the_vehicle_behind_which_it_opens() 
 
 
 def test_scenarios_without_a_driver_are_not_decided() -> None:
-    assert decisions.course_of("scenario_3") is None
-    assert decisions.course_of("class_1") is None
-    assert decisions.course_of("scenario_9") == "cut-in"
+    assert decisions.manoeuvre_of("scenario_3") is None
+    assert decisions.manoeuvre_of("class_1") is None
+    assert decisions.manoeuvre_of("scenario_9") == "cut-in"
 
 
 def test_a_formula_is_partly_preventable_only_where_drives_show_both() -> None:
@@ -318,7 +319,7 @@ def written(folder: Path, text: str, name: str = "catalogue.toml") -> Path:
 def faults_in(folder: Path) -> dict[str, str]:
     """The faults of the tests of a folder by id."""
     found = read_catalogue([folder], HOME.alone).entries
-    return {x.id: x.fault for x in found if isinstance(x, Concrete) and x.fault}
+    return {x.id: x.fault for x in found if isinstance(x, ConcreteTest) and x.fault}
 
 
 @pytest.mark.parametrize(
@@ -329,10 +330,10 @@ def test_one_mistake_is_one_fault(text: str, told: str, tmp_path: Path) -> None:
     """The message names the file and the test; those before and after it are as they were."""
     folder = written(tmp_path, f"{FIRST}[[test]]\n{text}\n{LAST}")
     first, wrong, last = read_catalogue([folder], HOME.alone).entries
-    assert isinstance(first, Abstract)
+    assert isinstance(first, AbstractTest)
     assert first.query.text == "scenario_4(SV, POV, L)"
-    assert last == Concrete("LAST", str(folder / "braking.json"), claims=("scenario_4",))
-    assert isinstance(wrong, Concrete)
+    assert last == ConcreteTest("LAST", str(folder / "braking.json"), claims=("scenario_4",))
+    assert isinstance(wrong, ConcreteTest)
     assert str(folder / "catalogue.toml") in wrong.fault
     assert told in wrong.fault
 
@@ -379,9 +380,9 @@ def test_tests_inside_of_a_long_text_are_none(quotes: str, tmp_path: Path) -> No
     text = f"[[test]]\nid = 'X\ntitle = {quotes}\n[[test]]\nid = 'inside'\nfile = 'x.json'\n{quotes}\n"
     path = tmp_path / "catalogue.toml"
     path.write_text(text, "utf-8")
-    assert _by_itself(path) == ()
+    assert _fragments_alone(path) == ()
     path.write_text(text.replace(quotes, "''"), "utf-8")
-    assert any(x.fields.get("id") == "inside" for x in _by_itself(path))
+    assert any(x.fields.get("id") == "inside" for x in _fragments_alone(path))
 
 
 def test_a_file_that_a_faulty_test_names_is_no_test_by_itself(tmp_path: Path) -> None:

@@ -15,11 +15,11 @@ import roadproof as rp
 from roadproof.engines.search.batches import Engines
 from roadproof.evidence.claim import Claim, On
 from roadproof.evidence.codec import read, write
-from roadproof.extensions.catalogue import concrete
+from roadproof.extensions.catalogue import concrete_claims
 from roadproof.extensions.catalogue.candidates import candidates
 from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
-from roadproof.extensions.catalogue.entries import Concrete
-from roadproof.extensions.catalogue.showing import ConcreteAnswer
+from roadproof.extensions.catalogue.concrete_answer import ConcreteAnswer
+from roadproof.extensions.catalogue.entries import ConcreteTest
 from roadproof.runtime import archives, pool
 from roadproof.runtime.archives import SWITCH
 
@@ -55,19 +55,19 @@ class Work:
 def work(monkeypatch: pytest.MonkeyPatch) -> Work:
     """Watches all work, done here."""
     watched = Work()
-    show, settle = concrete.show, Engines.settle
+    judge_test, settle = concrete_claims.judge_test, Engines.answer_claim
 
-    def watched_show(entry: Concrete, *rest: Any) -> ConcreteAnswer:
+    def watched_judge(entry: ConcreteTest, *rest: Any) -> ConcreteAnswer:
         watched.judged.append(entry.id)
-        return show(entry, *rest)
+        return judge_test(entry, *rest)
 
     def watched_settle(engines: Engines, claim: Claim, proposed: Any = ()) -> Any:
         if not isinstance(claim.mode, On):
             watched.asked.add("NEVER" if "scenario_1" in claim.query.text.partition(")")[0] else "AHEAD")
         return settle(engines, claim, proposed)
 
-    monkeypatch.setattr(concrete, "show", watched_show)
-    monkeypatch.setattr(Engines, "settle", watched_settle)
+    monkeypatch.setattr(concrete_claims, "judge_test", watched_judge)
+    monkeypatch.setattr(Engines, "answer_claim", watched_settle)
     monkeypatch.setattr(pool, "work", lambda f, jobs, *_, **__: (x for x in enumerate(map(f, jobs))))
     return watched
 
@@ -77,8 +77,8 @@ def tests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """Three drives and two formulas; a cache of our own, and nothing that is shipped."""
     monkeypatch.setenv(SWITCH, "on")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr(archives, "shipped", lambda _: tmp_path / "shipped")
-    archives.archived.cache_clear()
+    monkeypatch.setattr(archives, "shipped_folder", lambda _: tmp_path / "shipped")
+    archives.shipped_answers.cache_clear()
     candidates.cache_clear()
     folder = tmp_path / "tests"
     folder.mkdir()
@@ -86,7 +86,7 @@ def tests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         shutil.copy(EXAMPLE / "drives" / f"{name}.json", folder)
     (folder / "catalogue.toml").write_text(TOML, "utf-8")
     yield folder
-    archives.archived.cache_clear()
+    archives.shipped_answers.cache_clear()
     candidates.cache_clear()
 
 

@@ -8,15 +8,15 @@ import pytest
 
 from extensions.catalogue.test_catalogue_verdicts import FOUR, HOME, ONE, concrete, decision, fact
 from roadproof.evidence.subject import TestedSide
-from roadproof.extensions.catalogue.asked import Questions
 from roadproof.extensions.catalogue.driver_sides import read_side_name, side_name
-from roadproof.extensions.catalogue.fact import Fact
-from roadproof.extensions.catalogue.playing import choices, chosen_vehicles
-from roadproof.extensions.catalogue.ranges import Span, spans_of
-from roadproof.extensions.catalogue.showing import ENDANGERED, _borne_out
+from roadproof.extensions.catalogue.fact import CatalogueFact
+from roadproof.extensions.catalogue.judge_test import _confirmed
+from roadproof.extensions.catalogue.ranges import InitialValueRange, ranges_of
+from roadproof.extensions.catalogue.role_choices import role_choices, vehicle_choices
+from roadproof.extensions.catalogue.target_formulas import ENDANGERED, TargetFormulas
 from roadproof.extensions.catalogue.view import CatalogueView
 from roadproof.extensions.traffic.evaluate.decisions import Decision, decide_formula
-from roadproof.reasons import NO_REASON, Why
+from roadproof.reasons import NO_REASON, ReasonKind
 
 # --- driver models ---------------------------------------------------------------------------------
 
@@ -39,8 +39,8 @@ def test_drives_on_one_side_decide_nothing_of_a_formula(
     assert (made.at, made.gap, made.instant, made.speed, made.start) == (None, None, None, None, {})
     looked = {x.reason.kind for x in decide_formula([decision(x) for x in sides], {(ONE, "careful")})}
     others = {x.reason.kind for x in decide_formula([decision(x) for x in sides], {(FOUR, "careful")})}
-    assert others == {Why.BOTH_SIDES if side == "partly" else Why.ONE_SIDE}
-    assert looked == {Why.BOTH_SIDES if side == "partly" else Why.ONE_SIDE_SOUGHT}
+    assert others == {ReasonKind.BOTH_SIDES if side == "partly" else ReasonKind.ONE_SIDE}
+    assert looked == {ReasonKind.BOTH_SIDES if side == "partly" else ReasonKind.ONE_SIDE_SOUGHT}
 
 
 def test_scenarios_and_models_are_decided_by_themselves() -> None:
@@ -63,9 +63,9 @@ def test_a_scenario_counts_under_a_restriction_where_its_driver_bears_it_out(
     decided: list[Decision], left: set[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wanted = SimpleNamespace(model="careful", side="preventable", scenarios=(1,))
-    monkeypatch.setattr("roadproof.extensions.catalogue.showing.restriction_of", lambda _: wanted)
-    asked = Questions(HOME, (1,), None, {})
-    found = _borne_out(concrete("t", ONE, "class_4", ENDANGERED, decisions=tuple(decided)), asked)
+    monkeypatch.setattr("roadproof.extensions.catalogue.judge_test.restriction_of", lambda _: wanted)
+    asked = TargetFormulas(HOME, (1,), None, {})
+    found = _confirmed(concrete("t", ONE, "class_4", ENDANGERED, decisions=tuple(decided)), asked)
     assert {x.what for x in found.shown} == left
     assert bool(found.notes) is (ONE not in left)
 
@@ -103,24 +103,24 @@ def test_other_names_are_no_sides(name: str) -> None:
 def test_the_share_of_a_range_that_no_test_is_in(
     tests: tuple[float, float], drives: tuple[float, float], untested: object, share: float
 ) -> None:
-    found = Span(ONE, "v_lon(SV)", "m/s", tests, drives, ("", ""))
+    found = InitialValueRange(ONE, "v_lon(SV)", "m/s", tests, drives, ("", ""))
     assert (found.untested, found.share) == (untested, pytest.approx(share))
 
 
 def test_a_range_needs_both_ends_and_reaches_as_far_as_tests() -> None:
     term = "v_lon(SV)"
 
-    def end(sense: Any, at: int, target: str = ONE) -> Fact:
+    def end(sense: Any, at: int, target: str = ONE) -> CatalogueFact:
         return fact("", target, "reaches", term=term, sense=sense, at=Fraction(at), reason=NO_REASON)
 
     tests = {ONE: {term: (5.0, 30.0)}, FOUR: {term: (5.0, 6.0)}}
     facts = [end("least", 7), end("greatest", 20), end("least", 0, FOUR)]
-    [found] = spans_of(HOME, tests, facts)
+    [found] = ranges_of(HOME, tests, facts)
     assert (found.target, found.tested, found.reached) == (ONE, (5, 30), (5, 30))
-    [found] = spans_of(HOME, {ONE: {term: (8.0, 9.0)}}, facts)
+    [found] = ranges_of(HOME, {ONE: {term: (8.0, 9.0)}}, facts)
     assert found.reached == (7, 20)
     still_open = fact("", FOUR, "open", term=term, sense="greatest")
-    assert len(spans_of(HOME, tests, [*facts, still_open])) == 1
+    assert len(ranges_of(HOME, tests, [*facts, still_open])) == 1
 
 
 PAIR, TRIPLE = ("SV", "POV"), ("SV", "POV1", "POV2")
@@ -142,13 +142,13 @@ PAIR, TRIPLE = ("SV", "POV"), ("SV", "POV1", "POV2")
 def test_vehicles_play_the_roles_that_they_are_called(
     names: tuple[str, ...], free: bool, any_way: bool, found: set[object]
 ) -> None:
-    assert {*choices([PAIR], [PAIR, TRIPLE], names, free, any_way)} == found
+    assert {*role_choices([PAIR], [PAIR, TRIPLE], names, free, any_way)} == found
 
 
 def test_who_is_given_a_role_plays_it_and_no_other() -> None:
-    assert [*chosen_vehicles(("7", "8", "9"), {"SV": "8"}, PAIR)] == [(1, 0), (1, 2)]
-    assert [*chosen_vehicles(("7", "8", "9"), {"SV": "8", "POV1": "7"}, PAIR)] == [(1, 2)]
-    assert len([*chosen_vehicles(("7", "8", "9"), {}, PAIR)]) == 6
+    assert [*vehicle_choices(("7", "8", "9"), {"SV": "8"}, PAIR)] == [(1, 0), (1, 2)]
+    assert [*vehicle_choices(("7", "8", "9"), {"SV": "8", "POV1": "7"}, PAIR)] == [(1, 2)]
+    assert len([*vehicle_choices(("7", "8", "9"), {}, PAIR)]) == 6
 
 
 def test_notes_say_with_what_drives_were_made() -> None:

@@ -7,20 +7,21 @@ from typing import Any, cast
 import pytest
 
 from roadproof.evidence.subject import TestedSide
-from roadproof.extensions.catalogue.asked import NOWHERE, Questions
+from roadproof.extensions.catalogue.catalogue_data import Figure, Relation, ShownTarget
 from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
-from roadproof.extensions.catalogue.entries import Abstract, Concrete
-from roadproof.extensions.catalogue.fact import Fact
-from roadproof.extensions.catalogue.kept import Figure, Relation, Shown
-from roadproof.extensions.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer
-from roadproof.extensions.catalogue.tested import Targets, figures, figures_beside
-from roadproof.extensions.catalogue.tested import tested as targets_of
+from roadproof.extensions.catalogue.concrete_answer import ConcreteAnswer
+from roadproof.extensions.catalogue.entries import AbstractTest, ConcreteTest
+from roadproof.extensions.catalogue.fact import CatalogueFact
+from roadproof.extensions.catalogue.figures import figures, figures_of_set
+from roadproof.extensions.catalogue.target_formulas import ENDANGERED, GAP, NO_CLASS, TargetFormulas
+from roadproof.extensions.catalogue.targets import Targets, find_targets
+from roadproof.extensions.catalogue.traces import _with_subject
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer
 from roadproof.extensions.traffic.evaluate.decisions import Decision
 from roadproof.library.bind import values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.verdict import ExitCode, Verdict
 
 LIBRARY = bundled_library()
@@ -31,28 +32,28 @@ TRUE = read_claim(HOME, "true")
 
 
 @pytest.fixture
-def asked() -> Questions:
-    made = Questions(HOME, (1, 4), None, values_with(LIBRARY, {}))
-    vars(made)["gaps"] = SimpleNamespace(words={"gap_a": "a", "gap_b": "b", "gap_c": "c"})
+def asked() -> TargetFormulas:
+    made = TargetFormulas(HOME, (1, 4), None, values_with(LIBRARY, {}))
+    vars(made)["gaps"] = SimpleNamespace(titles={"gap_a": "a", "gap_b": "b", "gap_c": "c"})
     return made
 
 
 def concrete(
     name: str, *shown: str, claims: tuple[str, ...] = (), begins: float = 0.0, **more: Any
 ) -> ConcreteAnswer:
-    entry = Concrete(name, f"{name}.json", claims=claims, copy_of=more.pop("copy_of", ""))
-    of_pair = tuple(Shown(x, ("SV", "POV"), "L", 0.0) for x in shown)
+    entry = ConcreteTest(name, f"{name}.json", claims=claims, copy_of=more.pop("copy_of", ""))
+    of_pair = tuple(ShownTarget(x, ("SV", "POV"), "L", 0.0) for x in shown)
     return ConcreteAnswer(entry, claims, of_pair, {"v_lon(SV)": begins}, **more)
 
 
 def fact(
     test: str, other: str, relation: Relation, also: Sequence[str] = (), drive: Any = None, **more: Any
-) -> Fact:
-    return Fact(test, other, relation, TRUE, also=tuple(also), drive=drive, **more)
+) -> CatalogueFact:
+    return CatalogueFact(test, other, relation, TRUE, also=tuple(also), drive=drive, **more)
 
 
-def abstract(name: str, *claims: str) -> Abstract:
-    return Abstract(name, TRUE, claims=claims)
+def abstract(name: str, *claims: str) -> AbstractTest:
+    return AbstractTest(name, TRUE, claims=claims)
 
 
 def decision(
@@ -67,14 +68,14 @@ def gap_class(verdict: Verdict) -> ClassAnswer:
 
 
 def looked_at(
-    asked: Questions,
+    asked: TargetFormulas,
     tests: Sequence[ConcreteAnswer] = (),
-    formulas: Sequence[Abstract] = (),
-    facts: Sequence[Fact] = (),
+    formulas: Sequence[AbstractTest] = (),
+    facts: Sequence[CatalogueFact] = (),
     near: float = 0.5,
     surveyed: Mapping[str, ClassAnswer | None] | None = None,
 ) -> Targets:
-    return targets_of(asked, tests, formulas, facts, WORDS, near, surveyed)
+    return find_targets(asked, tests, formulas, facts, WORDS, near, surveyed)
 
 
 def by_name(found: Targets) -> dict[str, tuple[tuple[str, ...], tuple[str, ...]]]:
@@ -84,7 +85,7 @@ def by_name(found: Targets) -> dict[str, tuple[tuple[str, ...], tuple[str, ...]]
 # --- what is tested --------------------------------------------------------------------------------
 
 
-def test_a_target_is_tested_by_each_test_that_shows_it_and_by_no_other(asked: Questions) -> None:
+def test_a_target_is_tested_by_each_test_that_shows_it_and_by_no_other(asked: TargetFormulas) -> None:
     found = looked_at(asked, [concrete("a", ONE), concrete("b", FOUR, ONE), concrete("c", ENDANGERED)])
     assert by_name(found) == {ONE: (("a", "b"), ()), FOUR: (("b",), ()), "class_4": ((), ())}
     assert [x.name for x in found.missing] == ["class_4"]
@@ -108,14 +109,14 @@ def test_a_target_is_tested_by_each_test_that_shows_it_and_by_no_other(asked: Qu
     ],
 )
 def test_a_formula_tests_what_it_implies_where_it_can_be_run(
-    facts: tuple[Fact, ...], sure: tuple[str, ...], possible: tuple[str, ...], asked: Questions
+    facts: tuple[CatalogueFact, ...], sure: tuple[str, ...], possible: tuple[str, ...], asked: TargetFormulas
 ) -> None:
     found = looked_at(asked, formulas=[abstract("t", ONE), abstract("u", ONE)], facts=facts)
     assert by_name(found)[ONE] == (sure, possible)
     assert (ONE in {x.name for x in found.missing}) is (not sure)
 
 
-def test_how_tests_begin_is_between_the_least_and_the_greatest(asked: Questions) -> None:
+def test_how_tests_begin_is_between_the_least_and_the_greatest(asked: TargetFormulas) -> None:
     found = looked_at(
         asked, [concrete(x, ONE, begins=v) for x, v in (("a", 4), ("b", 2), ("c", 9), ("d", 5))]
     )
@@ -130,7 +131,7 @@ def remarks(found: Targets, kind: str) -> dict[tuple[str, ...], str]:
     return {x.tests: x.told for x in getattr(found, kind)}
 
 
-def test_a_claim_is_a_fault_where_another_scenario_is_shown(asked: Questions) -> None:
+def test_a_claim_is_a_fault_where_another_scenario_is_shown(asked: TargetFormulas) -> None:
     tests = [
         concrete("right", ONE, claims=(ONE,)),
         concrete("wrong", FOUR, claims=(ONE,)),
@@ -163,14 +164,14 @@ def test_a_claim_is_a_fault_where_another_scenario_is_shown(asked: Questions) ->
     ],
 )
 def test_a_test_that_shows_nothing_is_a_fault(
-    test: ConcreteAnswer, told: str | None, asked: Questions
+    test: ConcreteAnswer, told: str | None, asked: TargetFormulas
 ) -> None:
     found = remarks(looked_at(asked, [test, concrete("u", FOUR)]), "faults")
     assert list(found) == ([("t",)] if told else [])
     assert told is None or told in found["t",]
 
 
-def test_a_gap_is_something_where_gaps_are_to_be_tested(asked: Questions) -> None:
+def test_a_gap_is_something_where_gaps_are_to_be_tested(asked: TargetFormulas) -> None:
     tests = [concrete("t", ENDANGERED, GAP, "gap_a")]
     surveyed = {"gap_a": None, "gap_b": gap_class(Verdict.WITNESSED), "gap_c": gap_class(Verdict.UNKNOWN)}
     assert remarks(looked_at(asked, tests, surveyed=surveyed), "faults") == {}
@@ -181,18 +182,26 @@ def test_a_gap_is_something_where_gaps_are_to_be_tested(asked: Questions) -> Non
     ("facts", "fault", "doubt"),
     [
         ((fact("t", "", "empty"),), "can never be run", ""),
-        ((fact("t", "", "open", reason=Why.NO_DRIVE()),), "no drive of it", "can be run is in doubt"),
+        ((fact("t", "", "open", reason=ReasonKind.NO_DRIVE()),), "no drive of it", "can be run is in doubt"),
         ((fact("t", "", "runs", [ONE]),), "", ""),
         ((fact("t", "", "runs"), fact("t", ONE, "implies")), "", ""),
         ((fact("t", "", "runs"), fact("t", ONE, "shows")), "", ""),
         ((fact("t", "", "runs"), fact("t", ONE, "excludes")), "which it excludes", ""),
-        ((fact("t", "", "runs"), fact("t", ONE, "open", reason=Why.NO_DRIVE())), "", "can show scenario_1"),
-        ((fact("t", "", "runs"), fact("t", FOUR, "open", reason=Why.NO_DRIVE())), "no drive of it shows", ""),
+        (
+            (fact("t", "", "runs"), fact("t", ONE, "open", reason=ReasonKind.NO_DRIVE())),
+            "",
+            "can show scenario_1",
+        ),
+        (
+            (fact("t", "", "runs"), fact("t", FOUR, "open", reason=ReasonKind.NO_DRIVE())),
+            "no drive of it shows",
+            "",
+        ),
         ((fact("t", "", "runs"),), "no drive of it shows", ""),
     ],
 )
 def test_what_a_formula_claims_is_shown_or_told(
-    facts: tuple[Fact, ...], fault: str, doubt: str, asked: Questions
+    facts: tuple[CatalogueFact, ...], fault: str, doubt: str, asked: TargetFormulas
 ) -> None:
     found = looked_at(asked, formulas=[abstract("t", ONE)], facts=facts)
     faults, doubts = remarks(found, "faults"), remarks(found, "doubts")
@@ -212,27 +221,27 @@ def test_what_a_formula_claims_is_shown_or_told(
     ],
 )
 def test_a_formula_without_claims_that_shows_nothing_is_a_fault(
-    facts: tuple[Fact, ...], told: bool, asked: Questions
+    facts: tuple[CatalogueFact, ...], told: bool, asked: TargetFormulas
 ) -> None:
     found = remarks(looked_at(asked, formulas=[abstract("t")], facts=facts), "faults")
     assert found == ({("t",): "shows no scenario"} if told else {})
 
 
-def test_an_end_of_a_range_that_is_open_is_a_doubt(asked: Questions) -> None:
-    left = fact("", ONE, "open", reason=Why.NO_DRIVE())
+def test_an_end_of_a_range_that_is_open_is_a_doubt(asked: TargetFormulas) -> None:
+    left = fact("", ONE, "open", reason=ReasonKind.NO_DRIVE())
     assert "how far its drives go" in remarks(looked_at(asked, facts=[left]), "doubts")[ONE,]
 
 
-def test_a_scenario_that_holds_in_no_class_is_a_contradiction(asked: Questions) -> None:
-    tests = [concrete("a", ONE), concrete("b", ONE, NOWHERE)]
-    found = looked_at(asked, tests, facts=[fact("t", "", "runs", [NOWHERE]), fact("u", "", "runs", [ONE])])
+def test_a_scenario_that_holds_in_no_class_is_a_contradiction(asked: TargetFormulas) -> None:
+    tests = [concrete("a", ONE), concrete("b", ONE, NO_CLASS)]
+    found = looked_at(asked, tests, facts=[fact("t", "", "runs", [NO_CLASS]), fact("u", "", "runs", [ONE])])
     assert [x.tests for x in found.contradictions] == [("b",), ("t",)]
 
 
 # --- gaps ------------------------------------------------------------------------------------------
 
 
-def test_each_class_of_gaps_is_tested_missing_empty_or_open(asked: Questions) -> None:
+def test_each_class_of_gaps_is_tested_missing_empty_or_open(asked: TargetFormulas) -> None:
     surveyed = {
         "gap_a": None,
         "gap_b": gap_class(Verdict.IMPOSSIBLE),
@@ -240,7 +249,7 @@ def test_each_class_of_gaps_is_tested_missing_empty_or_open(asked: Questions) ->
     }
     found = looked_at(asked, [concrete("t", ENDANGERED, GAP, "gap_a")], surveyed=surveyed)
     gaps = found.gaps
-    assert (gaps.asked, gaps.total) == (True, 3)
+    assert (gaps.required, gaps.total) == (True, 3)
     assert [(x.name, x.tested) for x in gaps.targets] == [("gap_a", ("t",)), ("gap_c", ())]
     assert [x.name for x in gaps.empty] == ["gap_b"]
     assert dict(gaps.open) == {"gap_c": "out of work"}
@@ -250,14 +259,14 @@ def test_each_class_of_gaps_is_tested_missing_empty_or_open(asked: Questions) ->
     assert [x.name for x in looked_at(asked, surveyed=there).gaps.missing] == ["gap_a", "gap_c"]
 
 
-def test_an_open_class_that_a_test_shows_is_not_open(asked: Questions) -> None:
+def test_an_open_class_that_a_test_shows_is_not_open(asked: TargetFormulas) -> None:
     surveyed = dict.fromkeys(("gap_a", "gap_b", "gap_c"), gap_class(Verdict.UNKNOWN))
     found = looked_at(asked, [concrete("t", ENDANGERED, GAP, "gap_a")], surveyed=surveyed)
     assert {*found.gaps.open} == {"gap_b", "gap_c"}
 
 
 @pytest.mark.parametrize("shown", ["tested", "possible"])
-def test_an_empty_class_that_is_shown_is_a_contradiction(shown: str, asked: Questions) -> None:
+def test_an_empty_class_that_is_shown_is_a_contradiction(shown: str, asked: TargetFormulas) -> None:
     tests = [concrete("t", ENDANGERED, GAP, "gap_a")] if shown == "tested" else []
     facts = [fact("t", "", "runs", ["gap_a"])] if shown == "possible" else []
     surveyed = {"gap_a": gap_class(Verdict.IMPOSSIBLE), "gap_b": None, "gap_c": None}
@@ -265,7 +274,7 @@ def test_an_empty_class_that_is_shown_is_a_contradiction(shown: str, asked: Ques
     assert [x.tests for x in found.contradictions] == [("t",)]
 
 
-def test_gaps_that_are_not_asked_for_are_those_that_are_shown(asked: Questions) -> None:
+def test_gaps_that_are_not_asked_for_are_those_that_are_shown(asked: TargetFormulas) -> None:
     found = looked_at(asked, [concrete("t", GAP, "gap_b", claims=("gap_c",))])
     assert ([x.name for x in found.gaps.targets], found.gaps.total) == (["gap_b", "gap_c"], 3)
     assert found.gaps.missing == ()
@@ -292,7 +301,7 @@ def test_tests_are_alike_where_they_show_the_same_and_begin_near(
     others: Sequence[tuple[str, tuple[str, ...], float, tuple[TestedSide, ...]]],
     near: float,
     alike: list[tuple[str, ...]],
-    asked: Questions,
+    asked: TargetFormulas,
 ) -> None:
     tests = [concrete("a", ONE)]
     for name, shown, begins, sides in others:
@@ -301,7 +310,7 @@ def test_tests_are_alike_where_they_show_the_same_and_begin_near(
     assert [x.tests for x in looked_at(asked, tests, near=near).alike] == alike
 
 
-def test_a_copy_and_a_test_that_cannot_be_read_are_like_none(asked: Questions) -> None:
+def test_a_copy_and_a_test_that_cannot_be_read_are_like_none(asked: TargetFormulas) -> None:
     tests = [concrete("a", ONE), concrete("b", ONE, copy_of="a"), concrete("c", ONE, fault="torn")]
     assert looked_at(asked, tests).alike == ()
     assert len(looked_at(asked, [*tests, concrete("d", ONE, copy_of="gone")]).alike) == 1
@@ -317,7 +326,7 @@ def test_a_copy_and_a_test_that_cannot_be_read_are_like_none(asked: Questions) -
     ],
 )
 def test_formulas_that_imply_each_other_are_told(
-    pairs: tuple[tuple[str, str], ...], told: dict[tuple[str, ...], str], asked: Questions
+    pairs: tuple[tuple[str, str], ...], told: dict[tuple[str, ...], str], asked: TargetFormulas
 ) -> None:
     facts = [fact(*pair, "implies") for pair in pairs] + [fact("t", "u", "excludes")]
     found = remarks(looked_at(asked, formulas=[abstract("t", ONE), abstract("u", ONE)], facts=facts), "alike")
@@ -328,7 +337,7 @@ def test_formulas_that_imply_each_other_are_told(
 # --- figures, verdicts and exit codes --------------------------------------------------------------
 
 
-def test_figures_count_targets_that_are_tested(asked: Questions) -> None:
+def test_figures_count_targets_that_are_tested(asked: TargetFormulas) -> None:
     surveyed = {"gap_a": None, "gap_b": gap_class(Verdict.IMPOSSIBLE), "gap_c": gap_class(Verdict.WITNESSED)}
     facts = [fact("u", "", "runs", [FOUR])]
     found = looked_at(asked, [concrete("t", ONE, "class_4", GAP, "gap_a")], facts=facts, surveyed=surveyed)
@@ -352,10 +361,10 @@ def test_figures_count_targets_that_are_tested(asked: Questions) -> None:
     ],
 )
 def test_in_another_set_counts_what_is_shown_or_implied_there(
-    facts: tuple[Fact, ...], count: int, asked: Questions
+    facts: tuple[CatalogueFact, ...], count: int, asked: TargetFormulas
 ) -> None:
-    assert figures_beside(asked, [], facts) == (Figure("base", "scenarios", "", count, 2),)
-    [both] = figures_beside(asked, [concrete("a", FOUR)], facts)
+    assert figures_of_set(asked, [], facts) == (Figure("base", "scenarios", "", count, 2),)
+    [both] = figures_of_set(asked, [concrete("a", FOUR)], facts)
     assert both.tested == count + 1
 
 
@@ -378,7 +387,7 @@ SHOWN = ("b", (ENDANGERED, GAP, "gap_a", "gap_b"))
         ([GOOD, ("b", ())], None, ExitCode.UNEXPECTED),
         ([GOOD, SHOWN], OPEN, ExitCode.UNKNOWN),
         ([GOOD, ("b", ()), SHOWN], OPEN, ExitCode.UNKNOWN),
-        ([GOOD, ("b", (NOWHERE,)), SHOWN], OPEN, ExitCode.CROSSCHECK_FAILED),
+        ([GOOD, ("b", (NO_CLASS,)), SHOWN], OPEN, ExitCode.CROSSCHECK_FAILED),
         ([GOOD, SHOWN], {**OPEN, "gap_c": gap_class(Verdict.IMPOSSIBLE)}, ExitCode.AS_EXPECTED),
         ([GOOD, SHOWN], {**OPEN, "gap_c": gap_class(Verdict.WITNESSED)}, ExitCode.UNEXPECTED),
         ([GOOD, SHOWN], {**OPEN, "gap_a": gap_class(Verdict.IMPOSSIBLE)}, ExitCode.CROSSCHECK_FAILED),
@@ -388,13 +397,13 @@ def test_exit_codes(
     tests: Sequence[tuple[str, tuple[str, ...]]],
     surveyed: Mapping[str, ClassAnswer | None] | None,
     code: ExitCode,
-    asked: Questions,
+    asked: TargetFormulas,
 ) -> None:
     found = looked_at(asked, [concrete(name, *shown) for name, shown in tests], surveyed=surveyed)
     assert answer(found).exit_code is code
 
 
-def test_each_target_has_the_verdict_of_its_kind(asked: Questions) -> None:
+def test_each_target_has_the_verdict_of_its_kind(asked: TargetFormulas) -> None:
     surveyed = {
         "gap_a": None,
         "gap_b": gap_class(Verdict.IMPOSSIBLE),
@@ -414,3 +423,20 @@ def test_each_target_has_the_verdict_of_its_kind(asked: Questions) -> None:
     there = {**surveyed, "gap_c": gap_class(Verdict.WITNESSED)}
     assert answer(looked_at(asked, tests, surveyed=there)).verdicts["gap_c"] is Verdict.GAPS
     assert {*answer(looked_at(asked, tests)).verdicts} == {*WORDS}
+
+
+@pytest.mark.parametrize(
+    ("roles", "ids", "expected"),
+    [
+        ({}, "12", {"SV": "2", "POV": "1"}),
+        ({}, "123", {"SV": "2", "POV1": "1", "POV2": "3"}),
+        ({}, "1234", {"SV": "2"}),
+        ({"POV": "3"}, "123", {"SV": "2", "POV": "3"}),
+        ({"POV": "2"}, "12", {"POV": "2"}),
+        ({}, "13", {}),
+    ],
+)
+def test_the_subject_of_a_planning_problem_is_sv_where_it_has_no_role(
+    roles: Mapping[str, str], ids: str, expected: Mapping[str, str]
+) -> None:
+    assert _with_subject(roles, [*ids], "2") == expected

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from extensions.traffic.make_recording import Track, make_recording
-from roadproof.extensions.drivers.driving import DriverSettings, drive_of
+from roadproof.extensions.drivers.driver_settings import DriverSettings
+from roadproof.extensions.drivers.driving import drive_of
 from roadproof.extensions.drivers.manoeuvres import Manoeuvre
 from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.world.motion import State, state_at

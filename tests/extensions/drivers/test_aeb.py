@@ -16,17 +16,18 @@ from extensions.drivers.test_stepping import RATE as STEP_RATE
 from extensions.drivers.test_stepping import random_cut_ins
 from roadproof.errors import InputError
 from roadproof.evidence.judged import judge_file
-from roadproof.extensions.drivers import driving
+from roadproof.extensions.drivers import laws
 from roadproof.extensions.drivers.braking import AssistedBraking, Ramp
-from roadproof.extensions.drivers.driving import DriverSettings, drive_of
-from roadproof.extensions.drivers.lemmas import lemmas_for
+from roadproof.extensions.drivers.driver_settings import DriverSettings
+from roadproof.extensions.drivers.driving import drive_of
 from roadproof.extensions.drivers.lines import Side
 from roadproof.extensions.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, along_line, start_of
-from roadproof.extensions.drivers.models import models_for
+from roadproof.extensions.drivers.models import lemmas_for, models_for
 from roadproof.extensions.drivers.preventable.beside import judged_drive
-from roadproof.extensions.traffic.evaluate.questions import Settings
+from roadproof.extensions.drivers.start_scene import StartScene
+from roadproof.extensions.traffic.evaluate.questions import EvaluationSettings
 from roadproof.frontends.cli.main import main
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from tables import read_table
 
 RATE = 1000
@@ -201,21 +202,18 @@ def test_a_drive_with_another_constant_is_rejected(joined, changed):
 @pytest.mark.parametrize("late", ["driver", "aeb"])
 def test_braking_at_another_instant_is_not_followed(joined, speed, late, monkeypatch):
     """The speeds in the claim are those of the forged motion: what it says is pinned by instants."""
-    plain = driving._aided
-
-    def shifted(values_, reading, by):
-        found = plain(values_, reading)
-        ramp = getattr(found, late)
-        return replace(found, **{late: replace(ramp, onset=ramp.onset + by)})
-
+    plain, wrapped = laws._careful_onset, StartScene.wrapped
     given = {"Ve0": Fraction(36), "dV0": Fraction(12), "Vy": speed, "dx0": Fraction(70)}
     home = specification(cc_aeb=joined)
     reading, at = DriverSettings(values(), home.options), CUT_IN.values(given)
     judged_drive(CUT_IN, "careful", at, "preventable", home, reading)
-    aeb = plain(start_of(CUT_IN, at), reading)
-    matters = late == "aeb" or joined == "add" or aeb.driver.onset < aeb.aeb.onset
+    scene = StartScene(start_of(CUT_IN, at))
+    matters = late == "aeb" or joined == "add" or plain("cut-in", scene, reading) < scene.wrapped()
     for by in (Fraction(-1, 100), Fraction(1, 100)):
-        monkeypatch.setattr(driving, "_aided", lambda x, y, by=by: shifted(x, y, by))
+        if late == "driver":
+            monkeypatch.setattr(laws, "_careful_onset", lambda *x, by=by: plain(*x) + by)
+        else:
+            monkeypatch.setattr(StartScene, "wrapped", lambda x, by=by: wrapped(x) + by)
         if not matters:
             judged_drive(CUT_IN, "careful", at, "preventable", home, reading)
             continue
@@ -293,8 +291,8 @@ def test_a_false_lemma_of_aeb_is_refuted():
 def test_recordings_are_put_to_no_driver_that_is_not_worked_out():
     home = specification(cc_aeb="add", cc_gate="before_delay")
     with pytest.raises(rp.UsageError, match="cc_aeb=add, cc_gate=before_delay"):
-        Settings(home.library, home.options, values(), drivers=("careful",))
-    Settings(home.library, {**home.options, "cc_gate": "none"}, values(), drivers=("careful",))
+        EvaluationSettings(home.library, home.options, values(), drivers=("careful",))
+    EvaluationSettings(home.library, {**home.options, "cc_gate": "none"}, values(), drivers=("careful",))
 
 
 @pytest.mark.parametrize(

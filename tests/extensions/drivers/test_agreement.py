@@ -19,7 +19,11 @@ from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording
 from roadproof.extensions.traffic.evaluate.foretelling import last_common
 from roadproof.extensions.traffic.evaluate.matching import Match
 from roadproof.extensions.traffic.evaluate.one_trace import road_of
-from roadproof.extensions.traffic.evaluate.questions import Questions, Settings, ask
+from roadproof.extensions.traffic.evaluate.questions import (
+    EvaluationQuestions,
+    EvaluationSettings,
+    compile_questions,
+)
 from roadproof.extensions.traffic.formats.recording import Recording
 
 ALL = tuple(MODELS)
@@ -28,9 +32,9 @@ _RIGHT = -34.0  # m: the right lane there
 HEAD = "time,vehicle,s,d,v_lon,v_lat,a_lon,a_lat,length,width"
 
 
-def questions() -> Questions:
-    known = Settings(library(), {}, values(), ("base",), (F(0),), (1, 2, 4), drivers=ALL)
-    return ask(known, RATE)
+def questions() -> EvaluationQuestions:
+    known = EvaluationSettings(library(), {}, values(), ("base",), (F(0),), (1, 2, 4), drivers=ALL)
+    return compile_questions(known, RATE)
 
 
 def recordings() -> Iterator[Recording]:
@@ -57,7 +61,7 @@ def touching(a: Samples, b: Samples) -> int:
     return min(SECONDS * RATE, int(found[0]) if len(found) else SECONDS * RATE)
 
 
-def matched(asked: Questions) -> Iterator[tuple[Recording, Match]]:
+def matched(asked: EvaluationQuestions) -> Iterator[tuple[Recording, Match]]:
     for recording in recordings():
         for match in evaluate_recording(recording, asked).matches:
             if match.labels and match.begun is not None:

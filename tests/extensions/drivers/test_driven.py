@@ -6,15 +6,15 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.engines.search import ask
-from roadproof.extensions.drivers.driving import DriverSettings
+from roadproof.engines.search import drive_search
+from roadproof.extensions.drivers.driver_settings import DriverSettings
 from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.drivers.objection import Driven
 from roadproof.extensions.drivers.outcome import Result
 from roadproof.extensions.drivers.replay import replay
 from roadproof.extensions.traffic.evaluate import decisions
 from roadproof.library.bind import values_with
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.verdict import Verdict
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "catalogue" / "tests"
@@ -37,11 +37,11 @@ def test_a_drive_counts_where_the_model_in_it_ends_so(model: str) -> None:
 
 def test_drives_to_which_a_model_objects_are_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Driven, "objection", lambda *_: "no collision, 3 m left")
-    monkeypatch.setattr(ask, "TRIES", 1)
+    monkeypatch.setattr(drive_search, "TRIES", 1)
     found = rp.witness(1, unpreventable="careful", jobs=1)
     assert found.verdict is Verdict.UNKNOWN
     [outcome] = found.outcomes
-    assert outcome.reason.kind is Why.NOT_DRIVEN
+    assert outcome.reason.kind is ReasonKind.NOT_DRIVEN
     assert "no collision, 3 m left" in outcome.reason
 
 

@@ -6,6 +6,7 @@ from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 from random import Random
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,12 +18,12 @@ from extensions.drivers.test_preventable import copy, with_changed
 from roadproof.errors import UsageError
 from roadproof.evidence.judged import judge_file
 from roadproof.extensions.drivers import gradual
-from roadproof.extensions.drivers.braking import AssistedBraking, Ramp
-from roadproof.extensions.drivers.driving import DriverSettings, _along, drive_of, motion_in_deceleration
-from roadproof.extensions.drivers.lemmas import lemmas_for
-from roadproof.extensions.drivers.lines import SIDES, Line, end_of, sides_in
+from roadproof.extensions.drivers.braking import AssistedBraking, Ramp, pieces_of
+from roadproof.extensions.drivers.driver_settings import DriverSettings
+from roadproof.extensions.drivers.driving import drive_of, motion_under
+from roadproof.extensions.drivers.lines import SIDES, PlateLine, end_of, sides_in
 from roadproof.extensions.drivers.manoeuvres import DECELERATION, KMH, MANOEUVRES, Plane, line, start_of
-from roadproof.extensions.drivers.models import MODELS, unpreventable
+from roadproof.extensions.drivers.models import MODELS, law_of, lemmas_for, unpreventable
 from roadproof.extensions.drivers.preventable.beside import (
     beside_boundary,
     far_apart,
@@ -36,7 +37,7 @@ from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.drive_data import strips_of
 from roadproof.logic.formula import And, Application, subformulas
-from roadproof.semantics.exact.algebraic import Root, approximate
+from roadproof.semantics.exact.algebraic import Root, as_float
 
 RATE = 1000
 SOFT = DriverSettings(values(), specification().options)
@@ -86,8 +87,8 @@ def exactly(cases: list[dict[str, Fraction]], model: str, reading: DriverSetting
     found = []
     for case in cases:
         start = start_of(DECELERATION, DECELERATION.values(case))
-        motion = motion_in_deceleration(model, start, reading)
-        found.append(approximate(gradual.most_gained(motion, start)) if motion else np.inf)
+        motion = motion_under(law_of(model), "deceleration", start, reading)
+        found.append(as_float(gradual.most_gained(motion, start)) if motion else np.inf)
     return np.array(found)
 
 
@@ -131,19 +132,19 @@ def test_a_very_large_rate_is_the_formula_without_one():
             ends = [cut.point for cut in line(at, formula, row).cuts[-1:]]
             others = [cut.point for cut in gradual.line(quick, "careful", SOFT, row).cuts[-1:]]
             assert np.allclose(
-                [float(approximate(x)) for x in ends], [float(approximate(x)) for x in others], atol=1e-6
+                [float(as_float(x)) for x in ends], [float(as_float(x)) for x in others], atol=1e-6
             )
 
 
 def test_ends_where_pov_stands_in_its_ramp_are_roots():
     case = {"Ve0": Fraction(20), "dV0": Fraction(15), "Gx": Fraction(9), "dGdt": Fraction(1)}
     start = start_of(DECELERATION, DECELERATION.values(case))
-    most = gradual.most_gained(motion_in_deceleration("careful", start, SOFT), start)
+    most = gradual.most_gained(motion_under(law_of("careful"), "deceleration", start, SOFT), start)
     assert isinstance(most, Root)
     way = np.sqrt(8 * 5.0**3 / 9)
     full = float(values()["cc_braking"])
     stop = 20 * (1.15 + 0.3) + 20**2 / (2 * full) - full * 0.36 / 24
-    assert abs(approximate(most) - (stop - way)) < 1e-9
+    assert abs(as_float(most) - (stop - way)) < 1e-9
 
 
 @pytest.mark.parametrize(("model", "reading"), [("careful", SOFT), ("careful", HARD), ("rss", SOFT)])
@@ -280,8 +281,11 @@ def test_braking_is_affine_between_knots(joined: str, seed: int) -> None:
 @pytest.mark.parametrize("model", ["rss", "r157", "eu1426"])
 @pytest.mark.parametrize("onset", [Fraction(0), Fraction(1, 2), Fraction(3)])
 def test_nobody_brakes_before_the_onset(model: str, onset: Fraction) -> None:
-    pieces = _along(model, Fraction(20), onset, DriverSettings(values(), {}))
-    still = [(onset, Fraction(0), Fraction(0))] if onset else []
+    scene = SimpleNamespace(beside=lambda: onset, past_marking=lambda metres: onset)
+    response = law_of(model).respond("cut-in", scene, DriverSettings(values(), {}))
+    assert response.onset >= onset
+    still = [(response.onset, Fraction(0), Fraction(0))] if response.onset else []
+    pieces = pieces_of(Fraction(20), [*still, *response.phases])
     assert pieces[: len(still)] == still
     _, *changes = pieces[len(still)]
     assert any(changes)
@@ -299,10 +303,10 @@ def test_lemmas_are_those_of_the_models() -> None:
 def test_a_single_place_is_a_side_of_a_controller_only() -> None:
     along = (Fraction(0), Fraction(10))
     place = end_of(Fraction(4))
-    lines = [Line(Fraction(1), ((place, place),))]
+    lines = [PlateLine(Fraction(1), ((place, place),))]
     assert sides_in(lines, along, is_stepped=True) == {"unpreventable", "preventable"}
     assert sides_in(lines, along, is_stepped=False) == {"preventable"}
-    whole = [Line(Fraction(1), ((end_of(along[0]), end_of(along[1])),))]
+    whole = [PlateLine(Fraction(1), ((end_of(along[0]), end_of(along[1])),))]
     assert sides_in(whole, along, is_stepped=False) == {"unpreventable"}
 
 

@@ -16,7 +16,8 @@ import pytest
 from extensions.drivers.read import specification, values
 from planting import plant
 from roadproof.extensions.drivers import fuzzy, fuzzy_looks
-from roadproof.extensions.drivers.driving import DriverSettings, drive_of, road_of
+from roadproof.extensions.drivers.driver_settings import DriverSettings
+from roadproof.extensions.drivers.driving import drive_of, road_of
 from roadproof.extensions.drivers.manoeuvres import KMH, MANOEUVRES, Manoeuvre
 from roadproof.extensions.drivers.outcome import Outcome, Result
 from roadproof.extensions.drivers.replay import replay

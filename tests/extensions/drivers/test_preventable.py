@@ -13,10 +13,9 @@ import pytest
 import roadproof as rp
 from extensions.drivers.read import boundary, specification, values
 from roadproof.engines.search.batches import Engines
-from roadproof.evidence.answer import answer_data, read_answer
+from roadproof.evidence.answer_codec import answer_data, read_answer
 from roadproof.evidence.strict import read_json
-from roadproof.extensions.drivers.driving import DriverSettings
-from roadproof.extensions.drivers.lemmas import lemmas_for
+from roadproof.extensions.drivers.driver_settings import DriverSettings
 from roadproof.extensions.drivers.lines import SIDES
 from roadproof.extensions.drivers.manoeuvres import (
     CUT_IN,
@@ -27,7 +26,7 @@ from roadproof.extensions.drivers.manoeuvres import (
     Plane,
     line,
 )
-from roadproof.extensions.drivers.models import MODELS, manoeuvre_of, models_for
+from roadproof.extensions.drivers.models import MODELS, lemmas_for, manoeuvre_of, models_for
 from roadproof.extensions.drivers.preventable import report
 from roadproof.extensions.drivers.preventable.beside import beside_boundary, first_drive, judged_drive
 from roadproof.extensions.drivers.preventable.question import PreventableQuestion
@@ -35,7 +34,7 @@ from roadproof.frontends.cli.main import main
 from roadproof.logic import parse
 from roadproof.logic.parse import parse_claim
 from roadproof.questions.store import Store
-from roadproof.reasons import Reason, Why
+from roadproof.reasons import Reason, ReasonKind
 from roadproof.runtime.files import write_json
 from roadproof.semantics.exact.algebraic import moved
 from roadproof.semantics.exact.truth import Cut, TruthSet, union
@@ -173,7 +172,7 @@ def test_a_lemma_is_proved_and_kept_without_reading_its_text(monkeypatch, tmp_pa
     monkeypatch.setattr(parse, "_parse", lambda text, *more: read.append(text) or honest(text, *more))
     parse_claim.cache_clear()
     claim = question.lemma_claim("lemma-r157-faster")
-    answer, _ = Engines(question.work).settle(claim)
+    answer, _ = Engines(question.work).answer_claim(claim)
     answer = Store(tmp_path, "preventable", question.work).whole(answer)
     assert answer.verdict is Verdict.PROVED
     write_json(tmp_path / "lemma.json", answer_data(answer))
@@ -234,7 +233,7 @@ def test_places_of_which_no_drive_is_to_be_expected_contradict_nothing():
     places = [*beside_boundary(where, true, "preventable")]
     found = first_drive(where, "careful", places, "preventable", home, reading)
     assert isinstance(found, Reason)
-    assert (found.kind, len(places) > 3) == (Why.PASSED, True)
+    assert (found.kind, len(places) > 3) == (ReasonKind.PASSED, True)
     for at in places:
         with pytest.raises(rp.InputError, match="does not hold on the drive"):
             judged_drive(where.manoeuvre, "careful", at, "preventable", home, reading)
@@ -620,7 +619,7 @@ def asked(**more: Any) -> PreventableQuestion:
         raise Stopped
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("roadproof.frontends.api.questioned.settle", stop)
+        patch.setattr("roadproof.frontends.api.question_answers.decide_claims", stop)
         with pytest.raises(Stopped):
             rp.preventable(manoeuvre, [model], home, jobs=1, **given)
     return found[0]

@@ -14,20 +14,20 @@ import pytest
 
 from extensions.drivers.read import specification, values
 from extensions.drivers.simulated import Car, Case, Found, Simulation
-from roadproof.extensions.drivers.driving import DriverSettings
-from roadproof.extensions.drivers.models import MODELS, ModelName
+from roadproof.extensions.drivers.driver_settings import DriverSettings
+from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.drivers.outcome import Outcome
 from roadproof.extensions.drivers.replay import replay
 from roadproof.extensions.drivers.sampled_replay import SampledScene, Track, replay_samples
 from roadproof.world.drive import Drive, Motion, Piece
-from roadproof.world.motion import starts_of
-from roadproof.world.road import Lanelet, Road, pairs
+from roadproof.world.motion import piece_starts
+from roadproof.world.road import Lanelet, Road, adjacency
 
 LANES = ((F(0), F("3.5")), (F("3.5"), F(7)))
 ROAD = Road(
     "two",
     tuple(Lanelet(x, x, "main", "main", (None, None), lane) for x, lane in zip("RL", LANES, strict=True)),
-    pairs([("R", "L")]),
+    adjacency([("R", "L")]),
 )
 SEVERAL, FEW = 12, 4  # tests of a manoeuvre; of the fuzzy safety model, whose simulation takes longer
 MANY = int(os.environ.get("ROADPROOF_RANDOM_TESTS", "200"))  # of a model as drives, and as samples
@@ -152,7 +152,7 @@ def case_of(manoeuvre: str, drive: Drive, lanes: dict[str, tuple[F, F]], since: 
 def track_of(x: Motion) -> Track:
     """40 s of samples; pieces are floats from their exact first states on."""
     times = np.arange(40 * RATE) / RATE
-    starts = starts_of(x)
+    starts = piece_starts(x)
     which = np.searchsorted([float(y.time) for y in starts], times + 1e-12, "right") - 1
     s, d, v, u, a, across, jerk, begin = (
         np.array([float(getattr(y, name)) for y in starts])[which]
@@ -171,7 +171,7 @@ def track_of(x: Motion) -> Track:
 
 
 def replayed(
-    manoeuvre: str, model: ModelName, drive: Drive, since: F, settings: DriverSettings, in_samples: bool
+    manoeuvre: str, model: str, drive: Drive, since: F, settings: DriverSettings, in_samples: bool
 ) -> Outcome:
     vehicles = tuple(drive.vehicles)
     if not in_samples:
@@ -184,7 +184,7 @@ def replayed(
 HOME = specification()
 
 
-def check(manoeuvre: str, model: ModelName, k: int, in_samples: bool = False) -> str:
+def check(manoeuvre: str, model: str, k: int, in_samples: bool = False) -> str:
     """Return the verdict of a random test, which is that of the simulation; or that this is divided."""
     maker = Maker((manoeuvre, model, k))
     drive, lanes = maker.test(manoeuvre)
@@ -222,7 +222,7 @@ EACH = [(x, model.name) for model in MODELS.values() for x in model.manoeuvres]
 
 @pytest.mark.parametrize("in_samples", [False, True])
 @pytest.mark.parametrize(("manoeuvre", "model"), EACH)
-def test_random_tests(manoeuvre: str, model: ModelName, in_samples: bool) -> None:
+def test_random_tests(manoeuvre: str, model: str, in_samples: bool) -> None:
     number = FEW if MODELS[model].is_stepped else SEVERAL
     seen = [check(manoeuvre, model, k, in_samples) for k in range(number)]
     assert seen.count("divided") < 0.5 * len(seen)
@@ -236,7 +236,7 @@ def test_what_is_in_the_lane_already_is_perceived(in_samples: bool) -> None:
 
 @pytest.mark.parametrize("in_samples", [False, True])
 @pytest.mark.parametrize(("manoeuvre", "model"), EACH)
-def test_many_random_tests(manoeuvre: str, model: ModelName, in_samples: bool) -> None:
+def test_many_random_tests(manoeuvre: str, model: str, in_samples: bool) -> None:
     spoken = len(MODELS[model].manoeuvres)
     seen = [check(manoeuvre, model, k, in_samples) for k in range(-(-MANY // spoken))]
     assert {"prevented", "collides"} <= {*seen}

@@ -8,27 +8,28 @@ from typing import Literal, TypeAlias, get_args
 import pytest
 
 import roadproof as rp
-from roadproof.engines.prove.induction import prove_of_scenarios
+from roadproof.engines.prove.induction import prove_via_opaque_driver
 from roadproof.engines.search.impossible import show_impossible
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import load_drive
-from roadproof.extensions.catalogue.entries import Abstract
+from roadproof.extensions.catalogue.entries import AbstractTest
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, Plane, line
 from roadproof.extensions.drivers.models import MODELS, SCENARIOS, foreseen, unpreventable
 from roadproof.extensions.drivers.options import Prevention
 from roadproof.extensions.drivers.restricting import restricted
 from roadproof.extensions.drivers.restriction import Restriction, Side, restriction_of
+from roadproof.extensions.traffic.scenario_parts import initial_condition
 from roadproof.frontends.cli.main import main
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, negation
 from roadproof.library.elaborate import read_claim
-from roadproof.library.scenarios import Scenario, initial_condition, vehicles_of
+from roadproof.library.scenarios import Scenario, vehicles_of
 from roadproof.library.specification import Specification
 from roadproof.logic.formula import TRUE, Formula
-from roadproof.logic.initial_conditions import conjuncts
+from roadproof.logic.initial_conditions import top_level_conjuncts
 from roadproof.logic.rewrite import without_names
 from roadproof.runtime.budget import Effort
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from roadproof.semantics.exact.truth import complement, intersection
 from roadproof.verdict import Verdict
 from roadproof.world.road import Road
@@ -50,7 +51,7 @@ def restricted_to(side: Side, model: str, about: str = "scenarios") -> Specifica
 
 
 def said(formula: Formula) -> set[Formula]:
-    return {without_names(x) for x in conjuncts(formula)} - {TRUE}
+    return {without_names(x) for x in top_level_conjuncts(formula)} - {TRUE}
 
 
 def start_of(specification: Specification, number: int) -> set[Formula]:
@@ -125,14 +126,14 @@ def test_options_tell_the_restriction() -> None:
 def test_what_is_proved_of_scenarios_stays_proved_and_no_more() -> None:
     here = restricted_to("unpreventable", "careful")
     apart = read_claim(here, "not (scenario_1(SV,POV,L) and scenario_4(SV,POV,L))")
-    assert prove_of_scenarios(here, apart, Effort(3)).certificate is not None
+    assert prove_via_opaque_driver(here, apart, Effort(3)).certificate is not None
     together = read_claim(here, "not (scenario_1(SV,POV,L) and scenario_5(SV,POV,L))")
-    assert prove_of_scenarios(here, together, Effort(3)).verdict is Verdict.UNKNOWN
+    assert prove_via_opaque_driver(here, together, Effort(3)).verdict is Verdict.UNKNOWN
     never = read_claim(here, "scenario_4(SV,POV,L) and scenario_5(SV,POV,L)")
     shown = show_impossible(here, never, Effort(3))
     assert shown is not None
     assert shown.core
-    assert "begins" not in " ".join(shown.told)
+    assert "begins" not in " ".join(shown.core_texts)
 
 
 @pytest.mark.parametrize(
@@ -184,7 +185,7 @@ def test_evidence_is_about_the_side_that_was_asked(tmp_path: Path, capsys: Heard
     found = rp.witness(1, unpreventable="careful", out=tmp_path, pictures=False, jobs=1)
     assert found.verdict is Verdict.WITNESSED
     assert found.as_data()["prevention"]["scenarios"] == [1, 2, 4, 9, 10, 12, 17, 18, 20]
-    assert "unpreventable (competent and careful driver; by the formula of a state)" in found.supposed[0]
+    assert "unpreventable (competent and careful driver): scenarios 1" in found.supposed[0]
     assert main(["check", str(tmp_path)]) == 0
     [drive] = found.drives
     for side, holds in (("preventable", False), ("unpreventable", True)):
@@ -256,7 +257,7 @@ def test_a_driver_model_does_not_change_what_a_formula_test_means(side: str, tmp
     assert (target.tested, target.possible) == ((), ("range",))
     assert found.exit_code == 10
     [entry] = found.question.abstract
-    assert isinstance(entry, Abstract)
+    assert isinstance(entry, AbstractTest)
     file = load_drive(EXAMPLE / "drives" / "cut-in.json")
     claims = {
         "as it is": (rp.load().specification, "scenario_1(SV,POV,L)"),

@@ -17,7 +17,8 @@ from extensions.drivers.test_preventable import copy, with_changed
 from planting import plant
 from roadproof.evidence.judged import judge_file
 from roadproof.extensions.drivers import stepped
-from roadproof.extensions.drivers.driving import DriverSettings, drive_of
+from roadproof.extensions.drivers.driver_settings import DriverSettings
+from roadproof.extensions.drivers.driving import drive_of
 from roadproof.extensions.drivers.fuzzy import Controller, Scale, scale_of
 from roadproof.extensions.drivers.lines import SIDES
 from roadproof.extensions.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES, Plane

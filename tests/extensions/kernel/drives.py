@@ -22,15 +22,15 @@ from roadproof.extensions.kernel.coq import ready
 from roadproof.extensions.kernel.derivation import coq_derivation
 from roadproof.extensions.kernel.derivations.derive import derive
 from roadproof.extensions.kernel.derivations.parts import NoDerivationError
-from roadproof.extensions.kernel.drive import Shown
+from roadproof.extensions.kernel.drive import DriveStatement
 from roadproof.extensions.kernel.world import world_lines
 from roadproof.library.bind import bind
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.custom_names import is_kind, own_truth
+from roadproof.logic.custom_names import is_kind, signal_is_true
 from roadproof.semantics.exact import judge
 from roadproof.world.drive import Drive
-from roadproof.world.road import Lanelet, Road, pairs
+from roadproof.world.road import Lanelet, Road, adjacency
 from roadproof.world.signals import KINDS
 
 ROAD = Road(
@@ -41,7 +41,7 @@ ROAD = Road(
         Lanelet("y1", "y", "main", "main", (Fraction(1), None), (Fraction(2), Fraction(4))),
         Lanelet("z1", "z", "depart", "departure", (Fraction(0), Fraction(5)), (Fraction(4), Fraction(6))),
     ),
-    pairs([("x", "y"), ("y", "z")]),
+    adjacency([("x", "y"), ("y", "z")]),
 )
 LANES = {"L": "y"}
 HEAD = """\
@@ -77,8 +77,8 @@ asked = formulas(st.one_of(comparisons, of_road), leaves=4)
 
 
 # Signals of a specification, of vehicles and of none, and kinds, on drives with jerk.
-LOADS = {x: t.Own("load", x, (0, 0), Fraction(-2), Fraction(3)) for x in "AB"}
-RED = t.Own("red", "", truth=True)
+LOADS = {x: t.CustomSignal("load", x, (0, 0), Fraction(-2), Fraction(3)) for x in "AB"}
+RED = t.CustomSignal("red", "", truth=True)
 loads = st.sampled_from([*LOADS.values()])
 steps_of = lambda values: st.builds(  # noqa: E731
     lambda first, more: ((Fraction(0), first), *sorted((k, x) for k, x in more.items() if k)),
@@ -98,7 +98,7 @@ own_drives = st.builds(
 own_comparisons = st.one_of(
     st.builds(f.Compare, loads, operators, st.one_of(numbers, st.just(t.Signal("v_lon", "A")))),
     st.builds(lambda x, y, op: f.Compare(t.subtract(x, y), op, t.number(0)), loads, loads, operators),
-    st.sampled_from([own_truth(RED), f.Not(own_truth(RED))]),
+    st.sampled_from([signal_is_true(RED), f.Not(signal_is_true(RED))]),
     st.builds(is_kind, st.sampled_from("AB"), st.sampled_from(KINDS), st.booleans()),
     jerk_comparisons,
 )
@@ -138,7 +138,7 @@ def example(name, formula, drive, derivation, answer):
     file = DriveFile(None, "base", "", Fraction(0), LANES, {}, {}, ROAD, drive, overlaps_allowed=True)
     lines = [
         f"Definition {name} : drive :=",
-        *world_lines(Shown(file, formula, {}, {}, {}).world),
+        *world_lines(DriveStatement(file, formula, {}, {}, {}).world),
         ".",
         f"Example {name}_is : accepts {name} [] {raw.formula(formula)}",
         *coq_derivation(derivation),
@@ -158,4 +158,4 @@ def agrees_with_the_judge(given, least):
         out.append(example(f"no_{number}", f.Not(formula), drive, derivation, False))
     with ready() as coq:
         ran = coq.run("".join(out))
-    assert (ran.code, ran.complained) == (0, "")
+    assert (ran.code, ran.errors) == (0, "")

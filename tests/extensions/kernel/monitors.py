@@ -16,7 +16,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import bounds_of
 from roadproof.semantics.sampled import Batch, compile, compiled
 from roadproof.semantics.sampled.batch import Array
-from roadproof.semantics.sampled.semantics import View
+from roadproof.semantics.sampled.lattice import View
 
 HELPERS = """
 From Coq Require Import List NArith.
@@ -57,7 +57,7 @@ def monitored(formula: Formula, batch: Batch) -> Case:
     seen = monitor.observe(batch)
     shape = (seen.samples, -(-len(seen.lengths) // compiled.BITS))
     end = compiled.packed_inside(seen.lengths, seen.samples)
-    evaluation = compiled.Evaluation(compiled.TRUTH, seen.leaves, end, seen.dt, shape, monitor.states)
+    evaluation = compiled.LatticeEvaluation(compiled.TRUTH, seen.leaves, end, seen.dt, shape, monitor.states)
     plain = monitor.plain["it"]
     verdicts = monitor.evaluate(seen).answers["it"]
     states = {leaf: number for number, leaf in enumerate(seen.leaves)}

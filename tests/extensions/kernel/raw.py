@@ -51,7 +51,7 @@ def term(x):
             return f"(Var {text(name)})"
         case t.Signal(name, vehicle):
             return f"(Sig {SIGNALS[name]} {text(vehicle)})"
-        case t.Own(name, vehicle):
+        case t.CustomSignal(name, vehicle):
             return f"(Sig (Own {text(name)}) {text(vehicle)})"
         case t.Size(name, vehicle):
             return f"(Siz {SIZES[name]} {text(vehicle)})"
@@ -170,7 +170,7 @@ def random_formula(seed):
             case 3:
                 return t.Size(r.choice([*SIZES]), r.choice(NAMES))
             case 4:
-                return t.Own(r.choice(NAMES), r.choice(["", *NAMES]), truth=r.random() < 0.5)
+                return t.CustomSignal(r.choice(NAMES), r.choice(["", *NAMES]), truth=r.random() < 0.5)
         return t.Signal(r.choice([*SIGNALS]), r.choice(NAMES))
 
     def a_side(deep):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from extensions.kernel import raw
 from roadproof.extensions.kernel.coq import ready
-from roadproof.extensions.kernel.printer import CLOSE, Formals, Printer
+from roadproof.extensions.kernel.printer import FIXED_SPACE, Formals, Printer
 from roadproof.extensions.kernel.source import HEAD, Module
 from roadproof.logic.formula import Formula
 
@@ -26,7 +26,7 @@ def printed(number: int, formula: Formula, formals: Formals) -> str:
     printer = Printer(formals)
     shown = printer.formula(formula)
     body = [*printer.things, *printer.definitions, f"Definition claim : formula := {shown}."]
-    return f"Module m{number}.\n" + "\n".join(body).replace(CLOSE, " ") + f"\nEnd m{number}.\n"
+    return f"Module m{number}.\n" + "\n".join(body).replace(FIXED_SPACE, " ") + f"\nEnd m{number}.\n"
 
 
 def compared(formulas: Sequence[Formula], formals: Formals) -> str:
@@ -43,8 +43,8 @@ def answers(source: str) -> list[str]:
     """The words of the lists that Coq computes in a file. Raises ``AssertionError`` where it refuses it."""
     with ready() as coq:
         ran = coq.run(source)
-    assert ran.code == 0, ran.complained[:500]
-    return re.findall(r"\b(true|false|None)\b", re.sub(r": list .*", "", ran.said))
+    assert ran.code == 0, ran.errors[:500]
+    return re.findall(r"\b(true|false|None)\b", re.sub(r": list .*", "", ran.output))
 
 
 CLOSING = "\nQed.\nEnd "
@@ -61,7 +61,7 @@ def sort_out(accepted: Sequence[Module], refused: Sequence[Module]) -> None:
         texts.append(x.text.replace(CLOSING, "\nFail Qed.\nAbort.\nEnd "))
     with ready() as coq:
         ran = coq.run(HEAD + "".join(texts))
-    assert ran.code == 0, ran.complained[:500]
+    assert ran.code == 0, ran.errors[:500]
 
 
 # --- traces --------------------------------------------------------------------------------------

@@ -7,17 +7,17 @@ from dataclasses import replace
 import roadproof as rp
 from cli.test_schemas import validator
 from extensions.kernel.needs import needs_coq
-from roadproof.evidence.certificate import read_certificate, to_json
+from roadproof.evidence.certificate_file import read_certificate, to_json
 from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.kernels import Word
+from roadproof.evidence.kernels import KernelVerdict
 from roadproof.extensions.kernel import accept
 from roadproof.extensions.kernel.accept import find_tableau, judge, prepare
 from roadproof.extensions.kernel.coq import ready
 from roadproof.frontends.api.checking import check
 from roadproof.library.loading import bundled_library
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.package_data import shipped_folder
 
-PROOFS = shipped("proofs")
+PROOFS = shipped_folder("proofs")
 SHIPPED = sorted(x for x in PROOFS.glob("P*.json") if '"tableau"' in x.read_text("utf-8"))
 ONE = PROOFS / "P1-scenario-04-base.json"
 
@@ -47,7 +47,7 @@ def test_a_fact_that_is_not_proved_is_named():
     (lemma,) = certificate.lemmas
     false = replace(lemma, literals=tuple((name, not positive) for name, positive in lemma.literals))
     found = ruling(replace(certificate, lemmas=(false,)))
-    assert (found.word, found.lemma, str(found)) == (Word.UNKNOWN, 1, "unknown (lemma 1)")
+    assert (found.verdict, found.lemma, str(found)) == (KernelVerdict.UNKNOWN, 1, "unknown (lemma 1)")
 
 
 @needs_coq
@@ -62,7 +62,7 @@ def test_one_that_is_refused_does_not_take_others_with_it():
     order = [good[0], bad, good[1], other, broken, good[2]]
     with ready() as found:
         judged = judge(found, {f"n{k}": prepare(f"n{k}", x, library) for k, x in enumerate(order)})
-    words = [judged.rulings[f"n{k}"].word for k in range(len(order))]
+    words = [judged.rulings[f"n{k}"].verdict for k in range(len(order))]
     assert words == ["accepted", "refused", "accepted", "refused", "refused", "accepted"]
 
 
@@ -84,7 +84,7 @@ def test_a_program_that_says_yes_to_all_is_not_enough(monkeypatch, tmp_path):
     fake.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    assert ruling(read_certificate(ONE)).word is Word.UNKNOWN
+    assert ruling(read_certificate(ONE)).verdict is KernelVerdict.UNKNOWN
 
 
 @needs_coq
@@ -113,11 +113,11 @@ def test_proofs_at_values_are_accepted_with_the_values_put_in():
     text = prepare("one", certificate, bundled_library()).module.text
     assert "At minDanger = 0.6 s: numbers in place of these parameters." in text
     assert "G[0, 3 # 5] rssViolation SV POV" in " ".join(text.split()).replace("(", "").replace(")", "")
-    other = replace(certificate, assumed=replace(certificate.assumed, said=("minDanger = 0.4 s",)))
+    other = replace(certificate, assumed=replace(certificate.assumed, texts=("minDanger = 0.4 s",)))
     tableau = find_tableau(certificate, bundled_library())
-    assert ruling(replace(certificate, tableau=tableau)).word is Word.ACCEPTED
-    assert ruling(replace(other, tableau=tableau)).word is Word.REFUSED
-    assert ruling(other).word is Word.UNKNOWN
+    assert ruling(replace(certificate, tableau=tableau)).verdict is KernelVerdict.ACCEPTED
+    assert ruling(replace(other, tableau=tableau)).verdict is KernelVerdict.REFUSED
+    assert ruling(other).verdict is KernelVerdict.UNKNOWN
 
 
 ODD = """

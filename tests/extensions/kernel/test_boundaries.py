@@ -8,12 +8,12 @@ import pytest
 import roadproof as rp
 from extensions.kernel.needs import needs_coq
 from extensions.kernel.reading import answers, compared
-from roadproof.evidence.kernels import Word
+from roadproof.evidence.kernels import KernelVerdict
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES
 from roadproof.extensions.drivers.models import unpreventable
-from roadproof.extensions.kernel.boundary import Boundary, settle, theorem_for
+from roadproof.extensions.kernel.boundary import Boundary, judge_boundary, theorem_for
 from roadproof.extensions.kernel.coq import Coq, CoqRun, ready
-from roadproof.extensions.kernel.printer import CLOSE, Printer
+from roadproof.extensions.kernel.printer import FIXED_SPACE, Printer
 from roadproof.extensions.kernel.statement import formals_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import load_library
@@ -58,8 +58,8 @@ def boundary(manoeuvre: str, model: str) -> Boundary:
 @pytest.mark.parametrize(("manoeuvre", "model", "options"), CELLS)
 def test_formula_and_motion_are_proved_equal(manoeuvre, model, options):
     with ready() as coq:
-        ruling = settle(coq, specification(options), boundary(manoeuvre, model))
-    assert ruling.word is Word.ACCEPTED, ruling.reason
+        ruling = judge_boundary(coq, specification(options), boundary(manoeuvre, model))
+    assert ruling.verdict is KernelVerdict.ACCEPTED, ruling.reason
     assert "<->" in str(ruling)
     assert "ClassicalDedekindReals.sig_forall_dec" in ruling.axioms
 
@@ -70,11 +70,11 @@ def test_the_theorem_speaks_of_the_formula_of_the_specification(manoeuvre, model
     home = specification(options)
     formula = read_claim(home, unpreventable(manoeuvre, model, MANOEUVRES[manoeuvre].vehicles)).formula
     printer = Printer(formals_of(home))
-    claim = printer.formula(formula).replace(CLOSE, " ")
+    claim = printer.formula(formula).replace(FIXED_SPACE, " ")
     source = theorem_for(home, boundary(manoeuvre, model)).source
     flat = " ".join(source.split())
     for definition in (*printer.things, *printer.definitions):
-        assert " ".join(definition.replace(CLOSE, " ").split()) in flat
+        assert " ".join(definition.replace(FIXED_SPACE, " ").split()) in flat
     assert f"Definition claim : formula := {claim}." in flat
     assert source.count("Definition claim ") == source.count("holds W named (unbound W) now claim <->") == 1
 
@@ -140,8 +140,8 @@ WRONG = [
 @pytest.mark.parametrize(("manoeuvre", "model", "changed"), WRONG)
 def test_another_formula_is_not_proved(manoeuvre, model, changed):
     with ready() as coq:
-        ruling = settle(coq, specification({}, changed), boundary(manoeuvre, model))
-    assert ruling.word is Word.REFUSED
+        ruling = judge_boundary(coq, specification({}, changed), boundary(manoeuvre, model))
+    assert ruling.verdict is KernelVerdict.REFUSED
     assert "coqc says" in str(ruling)
 
 
@@ -151,8 +151,8 @@ def test_a_proof_on_other_axioms_is_refused(said):
         def run(self, source: str) -> CoqRun:
             return CoqRun(0, said, "", 0.1)
 
-    ruling = settle(Other("coqc", "8.16", Path()), specification({}), boundary("cut-in", "r157"))
-    assert ruling.word is Word.REFUSED
+    ruling = judge_boundary(Other("coqc", "8.16", Path()), specification({}), boundary("cut-in", "r157"))
+    assert ruling.verdict is KernelVerdict.REFUSED
 
 
 @needs_coq
@@ -183,5 +183,5 @@ def test_a_braking_that_grows_has_no_theorem(rates):
         "deceleration", ["careful"], at={"dGdt": rates}, lines=2, lemmas=False, kernel="coq", jobs=1
     )
     [ruling] = found.boundaries
-    assert ruling.word is Word.UNKNOWN
+    assert ruling.verdict is KernelVerdict.UNKNOWN
     assert ruling.reason.startswith("no theorem for gradual-deceleration ")

@@ -19,11 +19,11 @@ from roadproof.extensions.kernel.derivation import coq_derivation
 from roadproof.extensions.kernel.derivations.derive import derive
 from roadproof.extensions.kernel.derivations.parts import NoDerivationError
 from roadproof.extensions.kernel.derivations.prepare import prepare
-from roadproof.extensions.kernel.drive import shown
+from roadproof.extensions.kernel.drive import drive_statement
 from roadproof.extensions.kernel.world import world_lines
 from roadproof.frontends.api.checking import check
 from roadproof.library.loading import bundled_library
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.world.drive import Drive
 
 # Each true of the drive, with the rule that it takes.
@@ -63,7 +63,7 @@ def file_of(formula):
 
 
 def derived(formula):
-    what = shown(file_of(formula), bundled_library())
+    what = drive_statement(file_of(formula), bundled_library())
     return what, derive(what.formula, what.file.drive, what.file.road, what.file.lanes, what.values)
 
 
@@ -76,7 +76,7 @@ def test_a_derivation_is_found_by_the_rule_for_it(formula, rule):
 @pytest.mark.parametrize("formula", FALSE)
 def test_what_is_false_has_no_derivation(formula):
     ruling = judge_file(file_of(formula), bundled_library())
-    assert ruling.reason.kind is Why.DOES_NOT_HOLD
+    assert ruling.reason.kind is ReasonKind.DOES_NOT_HOLD
     with pytest.raises(NoDerivationError):
         derived(formula)
 
@@ -84,16 +84,16 @@ def test_what_is_false_has_no_derivation(formula):
 def wrong(step):
     """The derivation with one step of Soon or Crossing told something else, or put in another place."""
     if step.rule == "Soon":
-        begin, end = step.told
-        yield replace(step, told=(end, begin))
-        yield replace(step, told=("3", "4"))
+        begin, end = step.arguments
+        yield replace(step, arguments=(end, begin))
+        yield replace(step, arguments=("3", "4"))
     if step.rule == "Crossing":
-        begin, end, polynomial = step.told
-        yield replace(step, told=(end, begin, polynomial))
-        yield replace(step, told=("0", "1", polynomial))
-        yield replace(step, told=("3", "4", polynomial))
-        yield replace(step, told=(begin, end, "[-7; 0; 5]"))
-        yield replace(step, told=(begin, end, "[]"))
+        begin, end, polynomial = step.arguments
+        yield replace(step, arguments=(end, begin, polynomial))
+        yield replace(step, arguments=("0", "1", polynomial))
+        yield replace(step, arguments=("3", "4", polynomial))
+        yield replace(step, arguments=(begin, end, "[-7; 0; 5]"))
+        yield replace(step, arguments=(begin, end, "[]"))
     for place, child in enumerate(step.children):
         for other in wrong(child):
             yield replace(step, children=(*step.children[:place], other, *step.children[place + 1 :]))
@@ -121,7 +121,7 @@ def test_a_false_formula_is_refused_with_the_derivations_of_true_ones():
     made = []
     derivations = ["\n".join(coq_derivation(derived(x)[1])) for x in TRUE]
     for place, formula in enumerate(FALSE):
-        what = shown(file_of(formula), bundled_library())
+        what = drive_statement(file_of(formula), bundled_library())
         asked = [("the_drive", "claim", x) for x in derivations]
         made.append(refused(f"m{place}", what, derived(next(iter(TRUE)))[1], asked))
     accepted_whole(made)
@@ -164,9 +164,9 @@ def test_a_claim_that_is_true_on_no_road_is_refused():
     """By the derivation that it is false with other values of parameters."""
     made = []
     for place, (claim, rho) in enumerate([("rho < 1 s", "1/2"), ("F[rho, 2 s] true", "1")]):
-        what = shown(nowhere(f"not ({claim})", 3), bundled_library())
+        what = drive_statement(nowhere(f"not ({claim})", 3), bundled_library())
         derivation = derive(what.formula, what.file.drive, what.world.road, {}, what.values)
-        other = shown(nowhere(f"not ({claim})", rho), bundled_library())
+        other = drive_statement(nowhere(f"not ({claim})", rho), bundled_library())
         printed = " ".join(["(", *world_lines(other.world), ")"])
         made.append(refused(f"m{place}", what, derivation, [(printed, "claim", "reasons")]))
     accepted_whole(made)

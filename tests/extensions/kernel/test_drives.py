@@ -16,22 +16,22 @@ from extensions.kernel.needs import needs_coq
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.judged import judge_file
-from roadproof.evidence.kernels import Ruling, Word
-from roadproof.extensions.kernel.accept import AXIOMS, CoqModule, axioms_of, batches
+from roadproof.evidence.kernels import KernelRuling, KernelVerdict
+from roadproof.extensions.kernel.accept import AXIOMS, CoqModule, axioms_of, split_evenly
 from roadproof.extensions.kernel.accept import file as theory_file
 from roadproof.extensions.kernel.accept import judge as accept_judge
 from roadproof.extensions.kernel.coq import CoqRun, ready
-from roadproof.extensions.kernel.derivation import Step, coq_derivation
+from roadproof.extensions.kernel.derivation import DerivationStep, coq_derivation
 from roadproof.extensions.kernel.derivations.derive import derive
 from roadproof.extensions.kernel.derivations.prepare import prepare
-from roadproof.extensions.kernel.drive import claim_text, module, shown
+from roadproof.extensions.kernel.drive import drive_claim_text, drive_module, drive_statement
 from roadproof.extensions.kernel.source import Module, file
 from roadproof.extensions.kernel.world import world_lines
 from roadproof.frontends.api.checking import check
 from roadproof.library.bind import bind
 from roadproof.library.loading import bundled_library
 from roadproof.logic.rewrite import without_names
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.semantics.exact import judge
 from roadproof.semantics.exact.algebraic import Root
 from roadproof.world.drive import Drive
@@ -42,19 +42,19 @@ ONE = HOME / "examples/traffic/drives/scenario-04-base.json"
 THEOREM = re.compile(r"Theorem proved .*?Qed\.\n", re.DOTALL)
 
 
-def size(step: Step) -> int:
+def size(step: DerivationStep) -> int:
     """How many rules a derivation has."""
     return 1 + sum(map(size, step.children))
 
 
 def derivation_of(path):
-    what = shown(load_drive(path), bundled_library())
+    what = drive_statement(load_drive(path), bundled_library())
     return what, derive(what.formula, what.file.drive, what.file.road, what.file.lanes, what.values)
 
 
 def refused(name, what, derivation, asked):
     """A module that says of each of ``asked``, (drive, claim, reasons) as text, that it is not accepted."""
-    made = module(name, what, claim_text(what), derivation)
+    made = drive_module(name, what, drive_claim_text(what), derivation)
     said = [
         f"Example refused_{k} : Roadproof.Shown.accepts {drive} bounds {claim} {reasons} = false.\n"
         "Proof. vm_compute. reflexivity. Qed.\n"
@@ -66,7 +66,7 @@ def refused(name, what, derivation, asked):
 def accepted_whole(modules):
     with ready() as coq:
         ran = coq.run(file(modules))
-    assert (ran.code, ran.complained) == (0, "")
+    assert (ran.code, ran.errors) == (0, "")
 
 
 @needs_coq
@@ -137,14 +137,16 @@ def test_another_formula_with_the_derivation_of_this_is_refused():
     for claim in claims:
         other = replace(what.file, formula=claim)
         assert not judge_file(other, library).accepted
-        asked.append(("the_drive", raw.formula(without_names(shown(other, library).formula)), "reasons"))
+        asked.append(
+            ("the_drive", raw.formula(without_names(drive_statement(other, library).formula)), "reasons")
+        )
     accepted_whole([refused("m", what, derivation, asked)])
 
 
 def with_one_missing(step):
     """The derivation with each of its steps in turn put as plain."""
     if step.rule != "Plain":
-        yield Step("Plain")
+        yield DerivationStep("Plain")
     for place, child in enumerate(step.children):
         for other in with_one_missing(child):
             children = (*step.children[:place], other, *step.children[place + 1 :])
@@ -171,14 +173,14 @@ def test_a_change_at_an_irrational_instant():
         drive=Drive({"SV": replace(motion, pieces=(last,))}),
         formula="G (s(SV) > 0 m or s(SV) <= 0 m) and F (s(SV) >= 0 m) and not F[0, 1 s] s(SV) > 0 m",
     )
-    what = shown(file_, bundled_library())
+    what = drive_statement(file_, bundled_library())
     derivation = derive(what.formula, file_.drive, file_.road, file_.lanes, what.values)
     assert "Case" in str(derivation)
     ruling = judge_file(file_, bundled_library())
     assert any(
         isinstance(cut.point, Root) for truth in ruling.judgement.truths.values() for cut in truth.cuts
     )
-    accepted_whole([module("m", what, claim_text(what), derivation)])
+    accepted_whole([drive_module("m", what, drive_claim_text(what), derivation)])
 
 
 @needs_coq
@@ -198,7 +200,7 @@ def test_operators_of_time_that_change_at_one_irrational_instant_are_unknown(tmp
     path.write_text(json.dumps(data), "utf-8")
     assert check(path).accepted
     (finding,) = check(path, kernel="coq").findings
-    assert (finding.outcome, finding.kernel) == (Acceptance.UNDECIDED, str(Word.UNKNOWN))
+    assert (finding.outcome, finding.kernel) == (Acceptance.UNDECIDED, str(KernelVerdict.UNKNOWN))
     assert "no derivation was found: what holds changes exactly at an irrational" in finding.reason
 
 
@@ -245,22 +247,27 @@ class Player:
 
 
 def ran(code: int, said: str, complained: str) -> CoqRun:
-    return CoqRun(code=code, said=said, complained=complained, seconds=1.0, megabytes=2.0)
+    return CoqRun(code=code, output=said, errors=complained, seconds=1.0, megabytes=2.0)
 
 
-def rulings(*kinds: str) -> dict[str, Ruling]:
+def rulings(*kinds: str) -> dict[str, KernelRuling]:
     made = {f"c{k}": certificate(f"c{k}", kind) for k, kind in enumerate(kinds)}
     return accept_judge(Player(), made).rulings  # type: ignore[arg-type]
 
 
-WORDS = {"good": Word.ACCEPTED, "bad": Word.REFUSED, "slow": Word.UNKNOWN, "silent": Word.UNKNOWN}
+WORDS = {
+    "good": KernelVerdict.ACCEPTED,
+    "bad": KernelVerdict.REFUSED,
+    "slow": KernelVerdict.UNKNOWN,
+    "silent": KernelVerdict.UNKNOWN,
+}
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4])
 def test_each_has_its_own_word_in_every_mixture(count: int) -> None:
     for mixed in product(WORDS, repeat=count):
         found = rulings(*mixed)
-        assert [found[f"c{k}"].word for k in range(count)] == [WORDS[kind] for kind in mixed], mixed
+        assert [found[f"c{k}"].verdict for k in range(count)] == [WORDS[kind] for kind in mixed], mixed
 
 
 def test_a_reason_is_that_of_its_own_certificate() -> None:
@@ -276,19 +283,19 @@ def test_a_reason_is_that_of_its_own_certificate() -> None:
 @pytest.mark.parametrize(
     ("axioms", "word"),
     [
-        ((KNOWN,), Word.ACCEPTED),
-        ((), Word.ACCEPTED),
-        (tuple(sorted(AXIOMS)), Word.ACCEPTED),
-        ((OTHER,), Word.REFUSED),
-        ((KNOWN, OTHER), Word.REFUSED),
-        ((OTHER, KNOWN), Word.REFUSED),
-        ((*sorted(AXIOMS), OTHER), Word.REFUSED),
-        ((f"{KNOWN}_2",), Word.REFUSED),
-        (("sig_forall_dec",), Word.REFUSED),
+        ((KNOWN,), KernelVerdict.ACCEPTED),
+        ((), KernelVerdict.ACCEPTED),
+        (tuple(sorted(AXIOMS)), KernelVerdict.ACCEPTED),
+        ((OTHER,), KernelVerdict.REFUSED),
+        ((KNOWN, OTHER), KernelVerdict.REFUSED),
+        ((OTHER, KNOWN), KernelVerdict.REFUSED),
+        ((*sorted(AXIOMS), OTHER), KernelVerdict.REFUSED),
+        ((f"{KNOWN}_2",), KernelVerdict.REFUSED),
+        (("sig_forall_dec",), KernelVerdict.REFUSED),
     ],
 )
 def test_one_other_axiom_among_known_ones_refuses_all_of_the_file(
-    axioms: tuple[str, ...], word: Word
+    axioms: tuple[str, ...], word: KernelVerdict
 ) -> None:
     listed = "Axioms:\n" + "".join(f"{x} :\n  forall P : Prop, P\n" for x in axioms)
     said = listed if axioms else "Closed under the global context\n"
@@ -299,11 +306,11 @@ def test_one_other_axiom_among_known_ones_refuses_all_of_the_file(
 
     made = {name: certificate(name, "good") for name in ("a", "b")}
     found = accept_judge(Says(), made).rulings  # type: ignore[arg-type]
-    assert {x.word for x in found.values()} == {word}
+    assert {x.verdict for x in found.values()} == {word}
     for ruling in found.values():
         told = OTHER in axioms and OTHER in ruling.reason and KNOWN not in ruling.reason.split(", ")
         assert told or OTHER not in axioms
-        assert ruling.axioms == (axioms if word is Word.ACCEPTED else ())
+        assert ruling.axioms == (axioms if word is KernelVerdict.ACCEPTED else ())
 
 
 @pytest.mark.parametrize(
@@ -325,18 +332,22 @@ def test_axioms_are_read_where_coq_lists_them_alone(said: str, axioms: tuple[str
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 9])
 def test_batches_have_each_certificate_once(count: int) -> None:
     made = {f"c{k}": certificate(f"c{k}", "good") for k in range(7)}
-    parts = [*batches(made, count)]
+    parts = [*split_evenly(made, count)]
     assert sorted(name for part in parts for name in part) == sorted(made)
     assert all(part for part in parts)
     assert max(map(len, parts)) - min(map(len, parts)) <= 1
 
 
 def test_what_was_not_prepared_keeps_its_refusal() -> None:
-    refusal = Ruling(Word.REFUSED, Why.NOT_PUT(""))
+    refusal = KernelRuling(KernelVerdict.REFUSED, ReasonKind.NOT_PUT(""))
     made = {"a": CoqModule(None, 0, refusal), "b": certificate("b", "good"), "c": certificate("c", "bad")}
     player = Player()
     found = accept_judge(player, made).rulings  # type: ignore[arg-type]
-    assert [found[x].word for x in "abc"] == [Word.REFUSED, Word.ACCEPTED, Word.REFUSED]
+    assert [found[x].verdict for x in "abc"] == [
+        KernelVerdict.REFUSED,
+        KernelVerdict.ACCEPTED,
+        KernelVerdict.REFUSED,
+    ]
     assert found["a"] is refusal
     assert all("a" not in names for names in player.files)
 

@@ -20,14 +20,14 @@ from extensions.kernel.test_accept import ODD, ONE, PROOFS
 from extensions.kernel.test_drives import DRIVES, changed, derivation_of, with_one_missing
 from extensions.kernel.test_refused import CHANGES, EACH, FALSE, donors, exchange, on_roads
 from extensions.kernel.test_theories import library_formulas
-from roadproof.evidence.certificate import read_certificate
+from roadproof.evidence.certificate_file import read_certificate
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.judged import judge_file
 from roadproof.extensions.kernel import coq, ocaml
 from roadproof.extensions.kernel import extracted as extracted_text
 from roadproof.extensions.kernel.accept import CoqModule, prepare
 from roadproof.extensions.kernel.constructors import Writer
-from roadproof.extensions.kernel.drive import claim_text, shown
+from roadproof.extensions.kernel.drive import drive_claim_text, drive_statement
 from roadproof.extensions.kernel.extracted import drive, judge, proof
 from roadproof.extensions.kernel.source import Module
 from roadproof.extensions.kernel.statement import state
@@ -45,7 +45,7 @@ ECHO = Path(__file__).with_name("echo.ml")
 
 @needs_coq
 def test_the_shipped_checker_is_what_coq_extracts():
-    assert extracted() == (SOURCES / "checker.ml").read_bytes(), "make extract writes it again"
+    assert extracted() == (SOURCES / "checker.ml").read_bytes(), "run: make generated"
 
 
 # --- what is accepted ------------------------------------------------------------------------------
@@ -164,7 +164,7 @@ def test_a_fact_that_its_reason_does_not_show_is_named():
 @needs_ocaml
 def test_only_the_very_guarantee_is_known_by_name(monkeypatch):
     """With weaker bounds or another comparison or number it is another fact. No reason is searched for it."""
-    monkeypatch.setattr(extracted_text, "reason", lambda *_: None)
+    monkeypatch.setattr(extracted_text, "find_instant_proof", lambda *_: None)
     text = prepare("n0", read_certificate(PROOFS / "P9-base.json"), bundled_library(), proof).module.text
     others = [("above_0", "at_least_0"), ('"gap")) GT', '"gap")) GE'), ("(q 2 1)", "(q 1 1)")]
     texts = [text, *(text.replace(a, b).replace("n0", f"n{k}") for k, (a, b) in enumerate(others, 1))]
@@ -177,7 +177,7 @@ def test_only_the_very_guarantee_is_known_by_name(monkeypatch):
 def test_changed_drives_and_derivations_are_refused():
     what, derivation = derivation_of(DRIVES[0])
     bound = bind(what.formula, what.file.road, what.file.lanes, what.values)
-    text = claim_text(what)
+    text = drive_claim_text(what)
     others = [x for x in changed(what.file.drive) if not judge_drive(bound, x).holds]
     modules = [drive("n0", what, text, derivation)]
     for x in others:
@@ -189,7 +189,7 @@ def test_changed_drives_and_derivations_are_refused():
     for claim in ("not scenario_4(SV, POV, L)", "G scenario_4(SV, POV, L)", "scenario_3(SV, POV, L)"):
         other = replace(what.file, formula=claim)
         if not judge_file(other, library).accepted:
-            modules.append(drive(f"n{len(modules)}", shown(other, library), text, derivation))
+            modules.append(drive(f"n{len(modules)}", drive_statement(other, library), text, derivation))
     assert len(modules) >= 100
     assert verdicts(modules) == ["accepted", *["refused"] * (len(modules) - 1)]
 
@@ -200,7 +200,7 @@ def rulings_of(script, folder, *texts):
     path.write_text(f"#!/bin/sh\n{script}\n", "ascii")
     path.chmod(0o700)
     prepared = {f"n{k}": CoqModule(Module(f"n{k}", text, (), 0)) for k, text in enumerate(texts)}
-    return [str(x) for x in judge(ocaml.Program(path, "4.13.1"), prepared).rulings.values()]
+    return [str(x) for x in judge(ocaml.ExtractedProgram(path, "4.13.1"), prepared).rulings.values()]
 
 
 @pytest.mark.parametrize(
@@ -250,8 +250,8 @@ def test_what_is_no_form_is_not_read():
     with ocaml.ready() as program:
         said = [program.run(text) for text in UNREAD]
         broken = [program.run(text) for text in BROKEN]
-    assert [x.said[:9] for x in said] == ["a unread:"] * len(UNREAD)
-    assert [(x.code, x.said) for x in broken] == [(2, "")] * len(BROKEN)
+    assert [x.output[:9] for x in said] == ["a unread:"] * len(UNREAD)
+    assert [(x.code, x.output) for x in broken] == [(2, "")] * len(BROKEN)
 
 
 # --- what is read ----------------------------------------------------------------------------------
@@ -266,7 +266,7 @@ def written(formula):
 
 def compiler():
     """That to bytecode, which takes a third of the time."""
-    return str(Path(ocaml.find()[0]).with_name("ocamlc"))
+    return str(Path(ocaml.find_ocamlopt()[0]).with_name("ocamlc"))
 
 
 @pytest.fixture(scope="module")
@@ -284,9 +284,9 @@ def echoed(folder, texts, reader):
     (folder / "reader.ml").write_text(reader, "ascii")
     sources = ["checker.cmo", "reader.ml", "echo.ml"]
     ran = coq.run_program([compiler(), "-w", "-a", "-o", "echo", *sources], folder)
-    assert (ran.code, ran.complained) == (0, "")
+    assert (ran.code, ran.errors) == (0, "")
     asked = " ".join(" ".join(texts).split()) + "\n"
-    return coq.run_program([str(folder / "echo")], folder, asked.encode("ascii")).said.splitlines()
+    return coq.run_program([str(folder / "echo")], folder, asked.encode("ascii")).output.splitlines()
 
 
 def exact(value):
@@ -322,7 +322,7 @@ def expected_drive(what):
     values = [f"({text(a)} {exact(b)})" for a, b in sorted(what.values.items())]
     own = [
         f"((Own {text(n)}) {text(a)} {listed(f'({exact(at)} {exact(x)} {exact(x)})' for at, x in steps)})"
-        for (n, a), steps in sorted(file.drive.own.items())
+        for (n, a), steps in sorted(file.drive.custom_signals.items())
     ]
     return f"({' '.join(map(listed, (bodies, rectangles, pairs, lanes, values, own, [])))} None)"
 
@@ -365,7 +365,7 @@ def varied(drive):
         for (name, x), kind in zip(drive.vehicles.items(), ("truck", "bus"), strict=False)
     }
     steps = ((Fraction(0), Fraction(-1, 3)), (Fraction(5, 2), Fraction(4)))
-    return replace(drive, vehicles=vehicles, own={("red", ""): steps, ("blink", "SV"): steps[:1]})
+    return replace(drive, vehicles=vehicles, custom_signals={("red", ""): steps, ("blink", "SV"): steps[:1]})
 
 
 @cache
@@ -378,7 +378,7 @@ def questions():
         what, derivation = derivation_of(path)
         if path == DRIVES[0]:  # with ends of rectangles, jerk, kinds and signals
             what = replace(what, file=replace(what.file, road=ROAD, drive=varied(what.file.drive)))
-        lines = drive("n", what, claim_text(what), derivation).text.splitlines()
+        lines = drive("n", what, drive_claim_text(what), derivation).text.splitlines()
         first = next(k for k, line in enumerate(lines) if line.startswith(" (["))
         asked.append((f"(drive {' '.join(lines[first : first + 8])})", expected_drive(what)))
     return asked

@@ -149,7 +149,7 @@ def test_the_proof_stands_on_known_axioms_alone() -> None:
     """The algorithm on none; worlds on those of Coq's real numbers."""
     with ready() as coq:
         ran = coq.run(f"{monitor_theory()}\nPrint Assumptions value_right.\nPrint Assumptions decided.")
-    algorithm, none, worlds = ran.said.partition("Closed under the global context\n")
+    algorithm, none, worlds = ran.output.partition("Closed under the global context\n")
     assert (ran.code, algorithm, bool(none)) == (0, "", True)
     found = axioms_of(worlds)
     assert found

@@ -8,21 +8,22 @@ import pytest
 
 import roadproof as rp
 from examples import some
-from extensions.exchange.exporting.kept import kept
+from extensions.exchange.exporting.shipped_drives import shipped_drives
 from extensions.kernel.needs import needs_coq, needs_ocaml
 from extensions.kernel.reading import answers
 from extensions.kernel.test_accept import ruling
-from roadproof.evidence.kernels import Word
+from roadproof.evidence.kernels import KernelVerdict
 from roadproof.extensions.kernel import extracted, ocaml
 from roadproof.extensions.kernel.accept import CoqModule, find_tableau, judge, prepare
 from roadproof.extensions.kernel.coq import ready
-from roadproof.extensions.kernel.drive import shown
-from roadproof.extensions.kernel.printer import CLOSE, Printer
+from roadproof.extensions.kernel.drive import drive_statement
+from roadproof.extensions.kernel.printer import FIXED_SPACE, Printer
 from roadproof.extensions.kernel.source import HEAD, Module, instance_text
 from roadproof.extensions.kernel.statement import SCHEMAS, Instance, bounds_of
 from roadproof.extensions.kernel.world import world_lines
+from roadproof.library.assumption import ALL_SCHEMAS, INDUCTIONS
 from roadproof.library.loading import bundled_library
-from roadproof.library.motion import ALL_SCHEMAS, INDUCTIONS, axiom_arguments, axiom_formula
+from roadproof.library.motion import axiom_arguments, axiom_formula
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import parameters_of
 from spec.motions import ABOUT, AXIOMS, specification
@@ -87,7 +88,7 @@ def test_instances_are_those_of_the_library_and_no_false_formula_is_one():
     body += [f"Definition said : list formula := [{'; '.join(f'({x})%formula' for x in formulas)}]."]
     body += [f"Definition bounds := [{'; '.join(kinds)}]."]
     body += ["Eval vm_compute in map (fun s => map (is_instance bounds [s]) said) all."]
-    found = answers(FILE + "\n".join(body).replace(CLOSE, " "))
+    found = answers(FILE + "\n".join(body).replace(FIXED_SPACE, " "))
     expected = [x == y for _, x in pairs for y in (*(y for _, y in pairs), *FAULTS.values())]
     assert found == [str(x).lower() for x in expected]
     assert found.count("false") >= len(pairs) * len(FAULTS) >= 800
@@ -119,8 +120,10 @@ def test_a_module_with_another_fact_claim_or_theorem_is_not_accepted():
         modules[changed.name] = CoqModule(changed)
     with ready() as coq:
         rulings = judge(coq, {"one" if x == "kept" else x: y for x, y in modules.items()}).rulings
-    assert rulings["one"].word is Word.ACCEPTED
-    assert [rulings[f"n{k}"].told for k in range(len(changes))] == [word for _, _, word in changes]
+    assert rulings["one"].verdict is KernelVerdict.ACCEPTED
+    assert [rulings[f"n{k}"].text_with_premises for k in range(len(changes))] == [
+        word for _, _, word in changes
+    ]
 
 
 @cache
@@ -134,7 +137,7 @@ def told(texts):
     """The words of the extracted program about each form."""
     asked = {f"n{k}": CoqModule(Module(f"n{k}", x, (), 0)) for k, x in enumerate(texts)}
     with ocaml.ready() as program:
-        return [str(x.word) for x in extracted.judge(program, asked).rulings.values()]
+        return [str(x.verdict) for x in extracted.judge(program, asked).rulings.values()]
 
 
 @needs_ocaml
@@ -153,9 +156,9 @@ def test_the_extracted_program_accepts_all_and_nothing_that_is_changed():
 def test_a_false_claim_is_refused_with_the_tableau_of_a_true_one():
     certificate = strict_certificate()
     tableau = find_tableau(certificate, bundled_library())
-    assert ruling(replace(certificate, tableau=tableau)).word is Word.ACCEPTED
+    assert ruling(replace(certificate, tableau=tableau)).verdict is KernelVerdict.ACCEPTED
     false = replace(certificate, claim="s(SV) < s(POV) -> G s(SV) < s(POV)", tableau=tableau)
-    assert ruling(false).word is Word.REFUSED
+    assert ruling(false).verdict is KernelVerdict.REFUSED
 
 
 # --- drives -----------------------------------------------------------------------------------------
@@ -165,7 +168,9 @@ def test_a_false_claim_is_refused_with_the_tableau_of_a_true_one():
 def test_kept_drives_are_motions():
     """Of each drive file, the printed drive is proved to be one."""
     library = bundled_library()
-    printed = [world_lines(shown(x, library).world) for x in [*kept().values()][: some(72)]]
+    printed = [
+        world_lines(drive_statement(x, library).world) for x in [*shipped_drives().values()][: some(72)]
+    ]
     modules, goals = [], []
     for k, drive in enumerate(printed):
         lines = [
@@ -186,5 +191,5 @@ def test_kept_drives_are_motions():
         ran = coq.run(
             "".join([HEAD, head, "Open Scope Q_scope.\n", *modules, "Close Scope Q_scope.\n", *goals])
         )
-    assert ran.code == 0, ran.complained[:500]
+    assert ran.code == 0, ran.errors[:500]
     assert len(goals) >= 24

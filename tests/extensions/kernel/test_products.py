@@ -15,22 +15,22 @@ import z3
 import roadproof as rp
 from extensions.kernel.needs import needs_coq
 from planting import plant
-from roadproof.evidence.certificate import read_certificate
+from roadproof.evidence.certificate_file import read_certificate
 from roadproof.evidence.times import Moment
 from roadproof.extensions.kernel import cone, source
 from roadproof.extensions.kernel.accept import prepare
 from roadproof.extensions.kernel.coq import ready
 from roadproof.extensions.kernel.derivation import Crossing, Fixed, Later, Soon
-from roadproof.extensions.kernel.derivation import Moment as DerivedMoment
+from roadproof.extensions.kernel.derivation import DerivationMoment as DerivedMoment
 from roadproof.extensions.kernel.derivations.parts import NoDerivationError, between, breaks, covered, moments
-from roadproof.extensions.kernel.derivations.signs import Part
-from roadproof.extensions.kernel.instant import reason
-from roadproof.extensions.kernel.linear import GOAL, Linear
+from roadproof.extensions.kernel.derivations.signs import TimePart
+from roadproof.extensions.kernel.instant import find_instant_proof
+from roadproof.extensions.kernel.linear import GOAL, LinearConstraints
 from roadproof.extensions.kernel.source import HEAD
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic.rewrite import without_names
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.package_data import shipped_folder
 from roadproof.semantics.exact.algebraic import Point, Root
 from roadproof.semantics.exact.truth import Cut, TruthSet
 
@@ -78,8 +78,8 @@ def test_multipliers_are_whole_numbers():
     ("right", "wrong"), [("q / prod(", "q * prod("), ("len(self.scales) - 1 - place", "place")]
 )
 def test_sums_that_are_written_wrongly_are_not_accepted(monkeypatch, right, wrong):
-    name = "written" if "prod" in right else "_given"
-    plant(monkeypatch, cone.Sum, name, right, wrong)
+    name = "proof_text" if "prod" in right else "_given"
+    plant(monkeypatch, cone.AbsurdSum, name, right, wrong)
     found = rp.prove(FRACTIONS, kernel="coq", drive=False, jobs=1)
     (entry,) = found.as_data()["verdicts"]
     assert entry["kernel"]["says"] in ("refused", "unknown (lemma 1)")
@@ -102,7 +102,7 @@ def _proved(claim):
 
 
 def module_of(name):
-    certificate = read_certificate(shipped("proofs") / f"{name}.json")
+    certificate = read_certificate(shipped_folder("proofs") / f"{name}.json")
     return prepare("one", certificate, bundled_library()).module.text
 
 
@@ -120,13 +120,14 @@ def test_changed_reasons_are_refused(name):
     r = random.Random(name)
     text = module_of(name)
     assert "some_instant" not in text
-    before, claimed, reason = asked(text)
-    numbers = re.finditer(r"\b\d+\b", reason)
+    before, claimed, find_instant_proof = asked(text)
+    numbers = re.finditer(r"\b\d+\b", find_instant_proof)
     changes = [(m.start(), m.end(), str(int(m[0]) + r.choice([1, 2]))) for m in numbers]
-    changes += [(m.start(), m.end(), "false") for m in re.finditer(r"\btrue\b", reason)]
-    changes += [(m.start(), m.end(), f"{m[1]}0") for m in re.finditer(r"(\(Reads )\d+", reason)]
-    tried = [reason] + [
-        reason[:i] + new + reason[j:] for i, j, new in r.sample(changes, min(24, len(changes)))
+    changes += [(m.start(), m.end(), "false") for m in re.finditer(r"\btrue\b", find_instant_proof)]
+    changes += [(m.start(), m.end(), f"{m[1]}0") for m in re.finditer(r"(\(Reads )\d+", find_instant_proof)]
+    tried = [find_instant_proof] + [
+        find_instant_proof[:i] + new + find_instant_proof[j:]
+        for i, j, new in r.sample(changes, min(24, len(changes)))
     ]
     out = [HEAD, before]
     for place, changed in enumerate(tried):
@@ -134,8 +135,8 @@ def test_changed_reasons_are_refused(name):
         out.append(f"Eval vm_compute in (Roadproof.Products.settles {claimed} reason_{place}).\n")
     with ready() as coq:
         ran = coq.run("".join(out) + "End one.\n")
-    assert ran.code == 0, ran.complained[:500]
-    answers = re.findall(r"= (true|false)\n", ran.said)
+    assert ran.code == 0, ran.errors[:500]
+    answers = re.findall(r"= (true|false)\n", ran.output)
     assert len(answers) == len(tried)
     assert answers[0] == "true"
     # A larger multiplier of what is at least 0, a size that is read twice: as good a proof.
@@ -153,7 +154,7 @@ def test_changed_reasons_are_refused(name):
 )
 def test_no_reason_is_found_for_what_is_false_or_too_large(claim):
     fact = without_names(read_claim(bundled_library().select(), claim).formula)
-    assert reason(fact, {}, ()) is None
+    assert find_instant_proof(fact, {}, ()) is None
 
 
 # --- Linear constraints against z3: what follows is found, and its multipliers add up to something absurd
@@ -188,7 +189,7 @@ def is_absurd(witness, constraints):
 def test_what_follows_is_found_with_multipliers(seed):
     r, found = random.Random(seed), 0
     for _ in range(10):
-        linear, solver, constraints = Linear(), z3.Solver(), {}
+        linear, solver, constraints = LinearConstraints(), z3.Solver(), {}
         with ExitStack() as added:
             for number in range(r.randint(3, 10)):
                 strict, x = r.random() < 0.4, moment(r)
@@ -254,7 +255,7 @@ def instants(begin: Cut, end: Cut | None) -> Iterator[F]:
         time += STEP
 
 
-def follow(parts: list[Part], whole: Part) -> None:
+def follow(parts: list[TimePart], whole: TimePart) -> None:
     """They begin and end where the whole does, and each where the one before ends."""
     assert (parts[0].begin, parts[-1].end) == (whole.begin, whole.end)
     for one, other in pairwise(parts):
@@ -283,13 +284,13 @@ def windows(rng: random.Random) -> tuple[F, F | None]:
     return low, None if rng.random() < 0.2 else low + F(rng.randrange(0, 12), 4)
 
 
-def whole(rng: random.Random) -> Part:
+def whole(rng: random.Random) -> TimePart:
     begin = F(rng.randrange(0, 8), 4)
     if rng.random() < 0.2:
-        return Part(Cut(begin, rng.random() < 0.5), None)
+        return TimePart(Cut(begin, rng.random() < 0.5), None)
     after = rng.random() < 0.5
     end = begin + F(rng.randrange(1, 12), 4)
-    return Part(Cut(begin, after), Cut(end, rng.random() < 0.5))
+    return TimePart(Cut(begin, after), Cut(end, rng.random() < 0.5))
 
 
 @pytest.mark.parametrize("roots", [0.0, 0.5])
@@ -327,7 +328,7 @@ def test_a_moment_of_a_part_serves_each_of_its_instants(block: int, roots: float
     assert not crossings or roots
 
 
-def until_everywhere(part: Part, window: tuple[F, F | None], right: TruthSet, left: TruthSet) -> bool:
+def until_everywhere(part: TimePart, window: tuple[F, F | None], right: TruthSet, left: TruthSet) -> bool:
     """Whether an until holds at all instants, by sampling at eighths: with cuts at quarters that is exact."""
     low, high = window
     for time in instants(part.begin, part.end):
@@ -382,7 +383,7 @@ def test_a_break_of_a_part_is_one_at_each_of_its_instants(block: int, roots: flo
     assert roots or lost <= MOST_LOST
 
 
-def broken_everywhere(part: Part, window: tuple[F, F | None], never: TruthSet, failing: TruthSet) -> bool:
+def broken_everywhere(part: TimePart, window: tuple[F, F | None], never: TruthSet, failing: TruthSet) -> bool:
     """Whether at all instants the right side does not come, or the left one fails before."""
     low, high = window
     for time in instants(part.begin, part.end):

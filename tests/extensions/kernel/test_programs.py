@@ -11,8 +11,8 @@ from evidence.trees import RIGHT, WRONG
 from extensions.kernel.needs import needs_coq, needs_ocaml
 from extensions.kernel.reading import sort_out
 from roadproof.engines.search.none_within import derive
-from roadproof.evidence.kernels import Word
-from roadproof.evidence.program import Cases, Cut, Sum, refutes
+from roadproof.evidence.kernels import KernelVerdict
+from roadproof.evidence.program import CaseSplit, ColumnSplit, WeightedSum, refutes
 from roadproof.extensions.kernel import accept, coq, extracted, ocaml
 from roadproof.extensions.kernel.accept import AXIOMS
 from roadproof.extensions.kernel.programs import form, prepare
@@ -52,15 +52,18 @@ def test_the_program_accepts_or_refuses_trees_as_python_says():
     every = RIGHT | WRONG
     found = rulings("extracted", [(told, [pair]) for told, pair in every.items()])
     for told, ruling in zip(every, found, strict=True):
-        assert ruling.word is (Word.ACCEPTED if told in RIGHT else Word.REFUSED), (told, ruling)
+        assert ruling.verdict is (KernelVerdict.ACCEPTED if told in RIGHT else KernelVerdict.REFUSED), (
+            told,
+            ruling,
+        )
 
 
 @needs_coq
 def test_coq_accepts_or_refuses_trees_as_python_says():
     first = next(iter(WRONG))
     refused, *accepted = rulings("coq", [(x, [(RIGHT | WRONG)[x]]) for x in (first, *RIGHT)])
-    assert refused.word is Word.REFUSED, first
-    assert [x.word for x in accepted] == [Word.ACCEPTED] * len(RIGHT)
+    assert refused.verdict is KernelVerdict.REFUSED, first
+    assert [x.verdict for x in accepted] == [KernelVerdict.ACCEPTED] * len(RIGHT)
     assert set(accepted[0].axioms) <= AXIOMS
     right, *wrong = (
         prepare(f"m{k}", [x], [pair]).module for k, (x, pair) in enumerate([ONE, *WRONG.items()])
@@ -73,36 +76,36 @@ def test_coq_accepts_or_refuses_trees_as_python_says():
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_questions_are_accepted_with_two_assignments_of_lanes_too(kernel):
     assert max(len(pairs) for _, pairs in asked()) > 1
-    assert [x.word for x in rulings(kernel, asked())] == [Word.ACCEPTED] * len(QUESTIONS)
+    assert [x.verdict for x in rulings(kernel, asked())] == [KernelVerdict.ACCEPTED] * len(QUESTIONS)
 
 
 def branches(tree):
     match tree:
-        case Sum():
+        case WeightedSum():
             return ()
-        case Cases(_, trees):
+        case CaseSplit(_, trees):
             return trees
-        case Cut(_, _, low, high):
+        case ColumnSplit(_, _, low, high):
             return (low, high)
 
 
 def with_branches(tree, found):
-    if isinstance(tree, Cases):
+    if isinstance(tree, CaseSplit):
         return replace(tree, trees=found)
     return replace(tree, low=found[0], high=found[1])
 
 
 def spoiled(tree):
     """The tree with each multiplier left out or negated, with each branch missing, with other cuts."""
-    if isinstance(tree, Sum):
+    if isinstance(tree, WeightedSum):
         for k, (fact, weight) in enumerate(tree.weights):
             for other in (0, -weight):
-                yield "multiplier", Sum((*tree.weights[:k], (fact, other), *tree.weights[k + 1 :]))
-    if isinstance(tree, Cut):
+                yield "multiplier", WeightedSum((*tree.weights[:k], (fact, other), *tree.weights[k + 1 :]))
+    if isinstance(tree, ColumnSplit):
         yield "cut", replace(tree, column=tree.column + 1)
     each = branches(tree)
     for k, part in enumerate(each):
-        if isinstance(tree, Cases):
+        if isinstance(tree, CaseSplit):
             yield "branch", replace(tree, trees=(*each[:k], *each[k + 1 :]))
         for kind, other in spoiled(part):
             yield kind, with_branches(tree, (*each[:k], other, *each[k + 1 :]))
@@ -124,7 +127,9 @@ def test_with_another_multiplier_branch_or_bound_the_program_refuses_what_python
         others += [(kind, what, [*rest, (other, tree)]) for kind, other in widened(program)]
     truths = [all(refutes(*pair) for pair in pairs) for _, _, pairs in others]
     said = rulings("extracted", [(what, pairs) for _, what, pairs in others])
-    assert [x.word for x in said] == [Word.ACCEPTED if right else Word.REFUSED for right in truths]
+    assert [x.verdict for x in said] == [
+        KernelVerdict.ACCEPTED if right else KernelVerdict.REFUSED for right in truths
+    ]
     refused = Counter(kind for (kind, _, _), right in zip(others, truths, strict=True) if not right)
     assert min(refused[kind] for kind in ("multiplier", "branch", "bound")) >= 7, refused
 

@@ -10,15 +10,15 @@ import pytest
 import roadproof as rp
 from extensions.kernel.needs import needs_coq
 from roadproof.engines.prove.properties import template_properties
-from roadproof.evidence.certificate import read_certificate
-from roadproof.evidence.kernels import Word
+from roadproof.evidence.certificate_file import read_certificate
+from roadproof.evidence.kernels import KernelVerdict
 from roadproof.extensions.kernel.accept import find_tableau, prepare
 from roadproof.extensions.kernel.coq import ready
 from roadproof.extensions.kernel.source import HEAD, module
 from roadproof.extensions.kernel.statement import state
 from roadproof.extensions.kernel.tableau import RULES, coq_tree, lines, read_lines
 from roadproof.library.loading import bundled_library
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.package_data import shipped_folder
 from roadproof.verdict import Verdict
 from tables import read_table
 
@@ -83,18 +83,18 @@ def asked(x):
 def answers_to(parts):
     with ready() as coq:
         ran = coq.run(HEAD + "".join(parts))
-    assert ran.code == 0, ran.complained[:500]
-    return [answer == "true" for answer in re.findall(r"= (true|false)\n", ran.said)]
+    assert ran.code == 0, ran.errors[:500]
+    return [answer == "true" for answer in re.findall(r"= (true|false)\n", ran.output)]
 
 
 def donors():
-    certificates = {name: read_certificate(shipped("proofs") / f"{name}.json") for name in DONORS}
+    certificates = {name: read_certificate(shipped_folder("proofs") / f"{name}.json") for name in DONORS}
     return {name: (x, read_lines(x.tableau)) for name, x in certificates.items()}
 
 
 def exchange():
     """Scenario 3 is scenario 4 with the roles exchanged, in base; C2 says so of the other sets."""
-    certificate = read_certificate(shipped("proofs") / "P4-scenario-03-base.json")
+    certificate = read_certificate(shipped_folder("proofs") / "P4-scenario-03-base.json")
     return certificate, read_lines(certificate.tableau)
 
 
@@ -257,8 +257,10 @@ def test_without_an_instance_that_is_needed_there_is_no_tableau():
             for what, new in (("left out", ()), ("moved", tuple(f"{x} + 1" for x in moments))):
                 changed = replace(certificate, instances={**certificate.instances, site: new}, tableau=None)
                 ruling = prepare("one", changed, bundled_library()).refusal
-                found[what, "accepted" if ruling is None else str(ruling.word)] += 1
-                assert ruling is None or ruling.word in (Word.UNKNOWN, Word.REFUSED), name
+                found[what, "accepted" if ruling is None else str(ruling.verdict)] += 1
+                assert ruling is None or ruling.verdict in (KernelVerdict.UNKNOWN, KernelVerdict.REFUSED), (
+                    name
+                )
     print(found)
     assert found["left out", "unknown"] >= 5
 

@@ -18,7 +18,7 @@ from extensions.kernel.drives import (
 )
 from extensions.kernel.needs import needs_coq
 from judge.cases import formulas, jerk_comparisons, jerk_drives
-from roadproof.evidence.kernels import Word
+from roadproof.evidence.kernels import KernelVerdict
 from roadproof.extensions.kernel.accept import judge, prepare
 from roadproof.extensions.kernel.coq import ready
 from roadproof.library.bind import bind
@@ -64,21 +64,22 @@ def test_what_drives_with_own_signals_and_kinds_show_coq_accepts():
 
 def damaged(drive):
     """The drive with a value of a signal, a kind or a jerk changed."""
-    for key, course in drive.own.items():
+    for key, course in drive.custom_signals.items():
         for place, (start, value) in enumerate(course):
             other = Fraction(1) - value if key == ("red", "") else 1 - value
             yield Drive(
-                drive.vehicles, {**drive.own, key: (*course[:place], (start, other), *course[place + 1 :])}
+                drive.vehicles,
+                {**drive.custom_signals, key: (*course[:place], (start, other), *course[place + 1 :])},
             )
     for name, motion in drive.vehicles.items():
-        yield Drive({**drive.vehicles, name: replace(motion, kind="bus")}, drive.own)
+        yield Drive({**drive.vehicles, name: replace(motion, kind="bus")}, drive.custom_signals)
         for place, piece in enumerate(motion.pieces[:-1]):
             pieces = (
                 *motion.pieces[:place],
                 replace(piece, j_lon=piece.j_lon + 5),
                 *motion.pieces[place + 1 :],
             )
-            yield Drive({**drive.vehicles, name: replace(motion, pieces=pieces)}, drive.own)
+            yield Drive({**drive.vehicles, name: replace(motion, pieces=pieces)}, drive.custom_signals)
 
 
 @needs_coq
@@ -94,7 +95,7 @@ def test_a_damaged_drive_is_refused():
     assert count >= 20
     with ready() as coq:
         ran = coq.run("".join(out))
-    assert (ran.code, ran.complained) == (0, "")
+    assert (ran.code, ran.errors) == (0, "")
 
 
 @needs_coq
@@ -114,7 +115,7 @@ def test_a_proof_that_needs_a_declared_bound_fails_without_it(tmp_path):
     with ready() as coq:
         judged = judge(coq, prepared)
     assert len(claims) == 2
-    assert [x.word for x in judged.rulings.values()] == [Word.UNKNOWN, Word.UNKNOWN]
+    assert [x.verdict for x in judged.rulings.values()] == [KernelVerdict.UNKNOWN, KernelVerdict.UNKNOWN]
 
 
 ATOMS = [

@@ -16,7 +16,7 @@ from roadproof.extensions.kernel.accept import prepare
 from roadproof.extensions.kernel.cone import Constraint
 from roadproof.extensions.kernel.constructors import term
 from roadproof.extensions.kernel.coq import ready
-from roadproof.extensions.kernel.instant import reason
+from roadproof.extensions.kernel.instant import find_instant_proof
 from roadproof.extensions.kernel.reduction import reduce_constraints
 from roadproof.extensions.kernel.source import HEAD
 from roadproof.library.elaborate import read_claim
@@ -60,10 +60,13 @@ def test_a_square_with_a_wrong_weight_is_not_accepted(monkeypatch):
 @needs_coq
 def test_roots_with_a_changed_number_are_refused():
     r = random.Random(1)
-    before, claimed, reason = asked(_module(CLAIMS[0]).text)
-    places = [m for m in re.finditer(r"\d+", reason) if "square_" in reason[: m.start()]]
-    tried = [reason] + [
-        reason[: m.start()] + str(int(m[0]) + 1) + reason[m.end() :] for m in r.sample(places, 8)
+    before, claimed, find_instant_proof = asked(_module(CLAIMS[0]).text)
+    places = [
+        m for m in re.finditer(r"\d+", find_instant_proof) if "square_" in find_instant_proof[: m.start()]
+    ]
+    tried = [find_instant_proof] + [
+        find_instant_proof[: m.start()] + str(int(m[0]) + 1) + find_instant_proof[m.end() :]
+        for m in r.sample(places, 8)
     ]
     out = [HEAD, before]
     for place, changed in enumerate(tried):
@@ -71,8 +74,8 @@ def test_roots_with_a_changed_number_are_refused():
         out.append(f"Eval vm_compute in (Roadproof.Products.settles {claimed} reason_{place}).\n")
     with ready() as coq:
         ran = coq.run("".join(out) + "End one.\n")
-    assert ran.code == 0, ran.complained[:500]
-    answers = re.findall(r"= (true|false)\n", ran.said)
+    assert ran.code == 0, ran.errors[:500]
+    answers = re.findall(r"= (true|false)\n", ran.output)
     assert answers[0] == "true"
     assert answers[1:].count("false") >= 5, answers
 
@@ -144,7 +147,7 @@ def test_cases_that_share_products_find_what_each_finds_alone():
         for level in (1, 2, 3):
             alone, shared = cone.contradiction(case, level), cone.contradiction(case, level, known)
             assert alone[1] == shared[1]
-            assert (alone[0] and alone[0].written()) == (shared[0] and shared[0].written())
+            assert (alone[0] and alone[0].proof_text()) == (shared[0] and shared[0].proof_text())
     assert alone[0] is not None
 
 
@@ -164,23 +167,23 @@ MANY_CASES = f"given a, b, c, d, e, x, y: m: {CHOICES} and (x >= 1 m or y >= 1 m
 def test_what_contradicts_itself_once_closes_every_case_that_has_it():
     """Two contradictions, not one for each of 64 cases; Coq refuses them where they are about others."""
     fact = without_names(read_claim(bundled_library().select("base", {}), MANY_CASES).formula)
-    found = reason(fact, {}, ())
-    assert found.written.count("Absurd") <= 14
-    places = list(re.finditer(r"given_ (\d+)", found.written))
+    found = find_instant_proof(fact, {}, ())
+    assert found.proof_text.count("Absurd") <= 14
+    places = list(re.finditer(r"given_ (\d+)", found.proof_text))
     others = [
-        f"{found.written[: x.start(1)]}{int(x[1]) + by}{found.written[x.end(1) :]}"
+        f"{found.proof_text[: x.start(1)]}{int(x[1]) + by}{found.proof_text[x.end(1) :]}"
         for x in places
         for by in (-1, 1)
         if int(x[1]) + by >= 0
     ]
     atoms = "; ".join(map(term, found.atoms))
     out = [HEAD, "Open Scope Q_scope.\nOpen Scope nat_scope.\n"]
-    for why in [found.written, *others]:
+    for why in [found.proof_text, *others]:
         out.append(
             f"Eval vm_compute in (Roadproof.Products.settles [] [{atoms}] {raw.formula(fact)} {why}).\n"
         )
     with ready() as coq:
         ran = coq.run("".join(out))
-    assert ran.code == 0, ran.complained[:500]
-    answers = re.findall(r"= (true|false)\n", ran.said)
+    assert ran.code == 0, ran.errors[:500]
+    answers = re.findall(r"= (true|false)\n", ran.output)
     assert answers == ["true", *["false"] * len(others)]

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from extensions.exchange.exporting.kept import kept
+from extensions.exchange.exporting.shipped_drives import shipped_drives
 from extensions.kernel import raw
 from extensions.kernel.needs import needs_coq
 from extensions.kernel.reading import SOURCES, answers, compared, monitor_theory
 from roadproof.errors import InputError, RoadproofError, TextError
-from roadproof.evidence.kernels import Ruling, Word
+from roadproof.evidence.kernels import KernelRuling, KernelVerdict
 from roadproof.extensions.kernel import coq as coq_module
 from roadproof.extensions.kernel.accept import AXIOMS, CoqModule, axioms_of
 from roadproof.extensions.kernel.coq import THEORIES, ready
@@ -20,14 +20,14 @@ from roadproof.extensions.kernel.derivations import prepare as module
 from roadproof.extensions.kernel.derivations.parts import NoDerivationError
 from roadproof.extensions.kernel.derivations.prepare import prepare
 from roadproof.extensions.kernel.names import WORDS, comment
-from roadproof.extensions.kernel.printer import CLOSE, Printer
+from roadproof.extensions.kernel.printer import FIXED_SPACE, Printer
 from roadproof.extensions.kernel.source import HEAD
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.rewrite import without_names
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.runtime.cache import private_folder
 
 UNUSED = ("Sane", "Steps", "Recorded", "Monitor", "Extract")
@@ -60,8 +60,8 @@ def test_theories_compile_without_a_warning():
     with ready() as coq:
         others = [coq.run((SOURCES / f"{name}.v").read_text("ascii")) for name in ("Sane", "Steps")]
         others.append(coq.run(monitor_theory()))
-        complaints = json.loads((coq.theories / coq_module.COMPLAINTS).read_text("ascii"))
-    assert [(ran.code, ran.complained) for ran in others] == [(0, "")] * 3
+        complaints = json.loads((coq.theories / coq_module.WARNINGS).read_text("ascii"))
+    assert [(ran.code, ran.errors) for ran in others] == [(0, "")] * 3
     assert complaints == dict.fromkeys(THEORIES, "")
 
 
@@ -75,7 +75,7 @@ def test_compiled_theories_are_kept(tmp_path, monkeypatch):
     monkeypatch.setattr(coq_module, "run_program", lambda *args: said.append(run(*args)) or said[-1])
     with ready() as coq:
         assert len(said) == 3  # the version, and the theories
-    assert [ran.complained for ran in said] == [""] * 3
+    assert [ran.errors for ran in said] == [""] * 3
     with ready() as again:
         assert again.theories == coq.theories
     assert len(said) == 4
@@ -116,7 +116,7 @@ def test_theorems_stand_on_known_axioms_alone():
         )
         steps = (SOURCES / "Steps.v").read_text("ascii")
         ran = coq.run(f"{steps}\nFrom Roadproof Require Import {' '.join(THEORIES)}.\n{whole}")
-    found = axioms_of(ran.said)
+    found = axioms_of(ran.output)
     assert ran.code == 0
     assert found is not None
     assert set(found) <= AXIOMS
@@ -127,7 +127,7 @@ def test_a_theorem_that_is_admitted_is_told():
     """The reading of axioms can find one."""
     with ready() as coq:
         ran = coq.run("Lemma gap : 1 = 2. Admitted. Print Assumptions gap.")
-    found = axioms_of(ran.said)
+    found = axioms_of(ran.output)
     assert found is not None
     assert set(found) - AXIOMS == {"gap"}
 
@@ -208,8 +208,8 @@ def test_another_formula_is_told_from_the_printed_one():
 def test_a_definition_is_printed_as_a_function_once():
     query = read_claim(bundled_library().select(), "dangerArises(SV, POV)")
     printer = Printer(formals())
-    assert printer.formula(query.formula).replace(CLOSE, " ") == "dangerArises SV POV"
-    printed = "\n".join(printer.definitions).replace(CLOSE, " ")
+    assert printer.formula(query.formula).replace(FIXED_SPACE, " ") == "dangerArises SV POV"
+    printed = "\n".join(printer.definitions).replace(FIXED_SPACE, " ")
     assert "Definition danger (a b : vehicle) : formula := G[0, minDanger] rssViolation a b." in printed
     assert printed.count("Definition dangerAhead ") == 1
 
@@ -221,7 +221,7 @@ def test_a_definition_called_like_a_word_of_the_file_is_called_otherwise(name):
     assert name in WORDS
     printer = Printer()
     shown = printer.formula(f.Application(name, ("a",), f.Compare(t.Signal("s", "a"), "<", t.number(0))))
-    assert shown.split(CLOSE)[0] == f"{name}_2"
+    assert shown.split(FIXED_SPACE)[0] == f"{name}_2"
 
 
 def test_an_argument_is_no_word_that_the_body_says():
@@ -231,7 +231,7 @@ def test_an_argument_is_no_word_that_the_body_says():
     printer.formula(
         f.And((f.Compare(t.Parameter("rho"), ">", t.number(0)), f.Application("near", ("rho",), body)))
     )
-    assert printer.definitions[0].replace(CLOSE, " ").startswith("Definition near (rho_2 : vehicle)")
+    assert printer.definitions[0].replace(FIXED_SPACE, " ").startswith("Definition near (rho_2 : vehicle)")
 
 
 @pytest.mark.parametrize("name", ['a" b', "a.b", "", "x" * 300, "ä", "a\nb", "(* a"])
@@ -249,7 +249,7 @@ def test_words_in_comments_end_no_comment(said):
 
 # --- Drive files put to Coq: what is refused, and what is only unknown ------------------------------
 
-FILE = kept()["scenario-04-base"]
+FILE = shipped_drives()["scenario-04-base"]
 
 
 def test_a_drive_with_a_derivation_is_a_module_without_premises() -> None:
@@ -262,14 +262,14 @@ def test_a_formula_that_cannot_be_read_is_refused() -> None:
     made = prepare("one", replace(FILE, formula="nobody_knows(SV)"), bundled_library())
     assert (made.module, made.limits) == (None, 0)
     assert made.refusal is not None
-    assert made.refusal.word is Word.REFUSED
+    assert made.refusal.verdict is KernelVerdict.REFUSED
     assert made.refusal.reason.startswith("it cannot be put to the kernel: ")
 
 
 @pytest.mark.parametrize(
     ("error", "reason"),
     [
-        (NoDerivationError(Why.TOO_NEAR()), "no derivation was found: two instants are too near"),
+        (NoDerivationError(ReasonKind.TOO_NEAR()), "no derivation was found: two instants are too near"),
         (InputError("too long"), "it is not printed for the kernel: too long"),
     ],
 )
@@ -281,7 +281,7 @@ def test_a_drive_without_a_derivation_is_unknown(
 
     monkeypatch.setattr(module, "derive", fail)
     assert prepare("one", FILE, bundled_library()) == CoqModule(
-        None, refusal=Ruling(Word.UNKNOWN, Why.TOLD(reason))
+        None, refusal=KernelRuling(KernelVerdict.UNKNOWN, ReasonKind.TOLD(reason))
     )
 
 

@@ -14,14 +14,14 @@ from extensions.kernel.needs import needs_coq, needs_ocaml
 from judge.cases import comparisons, formulas
 from roadproof.evidence.countermodel import Countermodel, Instant, Loop, trace_data
 from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.kernels import Word
+from roadproof.evidence.kernels import KernelVerdict
 from roadproof.evidence.refutation import when_true
 from roadproof.extensions.kernel.coq import ready
-from roadproof.extensions.kernel.derivation import Later, Step, coq_derivation, sign, timed
+from roadproof.extensions.kernel.derivation import DerivationStep, Later, coq_derivation, sign, timed
 from roadproof.extensions.kernel.derivations.derive import derive_on
 from roadproof.extensions.kernel.derivations.prepare import prepare_trace
 from roadproof.extensions.kernel.derivations.traces import TraceShapes
-from roadproof.extensions.kernel.trace import Refutation, Refuted, refuted, world_of
+from roadproof.extensions.kernel.trace import TraceQuestion, TraceStatement, trace_statement, world_of
 from roadproof.extensions.kernel.world import ANYWHERE, world_lines
 from roadproof.frontends.api.checking import check
 from roadproof.library.loading import bundled_library
@@ -110,7 +110,7 @@ def cases(count, repeating):
 
 def refuted_by(formula, trace):
     world = world_of(trace, ("A", "B"), (), ANYWHERE, {})
-    return Refuted("", "base", trace, formula, world, {}, {})
+    return TraceStatement("", "base", trace, formula, world, {}, {})
 
 
 def example(name, what, derivation, answer):
@@ -145,7 +145,7 @@ def test_coq_says_of_random_traces_what_the_judge_says(repeating):
     assert damaged >= 15
     with ready() as coq:
         ran = coq.run("".join(out))
-    assert (ran.code, ran.complained) == (0, "")
+    assert (ran.code, ran.errors) == (0, "")
 
 
 # --- rounds ----------------------------------------------------------------------------------------
@@ -170,7 +170,7 @@ def after(seconds, step):
 
 
 def earlier(rounds, step):
-    return Step("Earlier", (str(rounds),), (step,))
+    return DerivationStep("Earlier", (str(rounds),), (step,))
 
 
 HALF = Fraction(1, 2)
@@ -207,11 +207,11 @@ ROUNDS = {
 def test_rounds_are_counted_within_what_repeats_and_only_ahead():
     out = [HEAD]
     for number, (formula, trace, derivation, answer) in enumerate(ROUNDS.values()):
-        turned = Step("Turn", (), (Step("Turn", (), (derivation,)),))
+        turned = DerivationStep("Turn", (), (DerivationStep("Turn", (), (derivation,)),))
         out.append(example(f"round_{number}", refuted_by(f.Not(formula), trace), turned, answer))
     with ready() as coq:
         ran = coq.run("".join(out))
-    assert (ran.code, ran.complained) == (0, "")
+    assert (ran.code, ran.errors) == (0, "")
 
 
 # --- what is refused, and what is only unknown -----------------------------------------------------
@@ -234,7 +234,7 @@ def sized(*lengths):
 
 
 def asked(claim, trace):
-    return Refutation(claim, "base", {}, (), trace_data(trace), "here")
+    return TraceQuestion(claim, "base", {}, (), trace_data(trace), "here")
 
 
 def test_a_claim_that_is_true_on_its_trace_has_no_module():
@@ -246,17 +246,22 @@ def test_a_claim_that_is_true_on_its_trace_has_no_module():
 @pytest.mark.parametrize(
     ("claim", "trace", "word", "reason"),
     [
-        ("nobody(SV)", jumping(), Word.REFUSED, "it cannot be put to the kernel"),
-        ("G v_lon(SV) > 0", jumping(loop=Loop(Fraction(0), Fraction(2))), Word.REFUSED, "repeats itself"),
-        ("given v: m/s: v > 0", jumping(), Word.REFUSED, "does not say what v is"),
-        ("G v_lon(SV) > 0", at(Fraction(1)), Word.REFUSED, "must ascend from 0"),
-        ("length(SV) > 0", sized(-1), Word.REFUSED, "not greater than 0"),
-        ("length(SV) > 0", sized(1, 2), Word.REFUSED, "changes"),
+        ("nobody(SV)", jumping(), KernelVerdict.REFUSED, "it cannot be put to the kernel"),
+        (
+            "G v_lon(SV) > 0",
+            jumping(loop=Loop(Fraction(0), Fraction(2))),
+            KernelVerdict.REFUSED,
+            "repeats itself",
+        ),
+        ("given v: m/s: v > 0", jumping(), KernelVerdict.REFUSED, "does not say what v is"),
+        ("G v_lon(SV) > 0", at(Fraction(1)), KernelVerdict.REFUSED, "must ascend from 0"),
+        ("length(SV) > 0", sized(-1), KernelVerdict.REFUSED, "not greater than 0"),
+        ("length(SV) > 0", sized(1, 2), KernelVerdict.REFUSED, "changes"),
     ],
 )
 def test_what_is_refused_or_unknown(claim, trace, word, reason):
     refusal = prepare_trace("one", asked(claim, trace), bundled_library()).refusal
-    assert refusal.word is word
+    assert refusal.verdict is word
     assert reason in refusal.reason
 
 
@@ -266,7 +271,7 @@ def test_what_is_printed_says_claim_trace_and_theorem():
     assert '(Speed_lon, "SV", [(0, 1, 1); (2, 0, 1)])' in text
     assert "Theorem proved : ~ Roadproof.Meaning.valid bounds claim." in text
     other = prepare_trace(
-        "one", asked("G v_lon(SV) > 0", jumping(held="after")), bundled_library()
+        "one", asked("G v_lon(SV) > 0", jumping(interpolation="after")), bundled_library()
     ).module.text
     assert '(Speed_lon, "SV", [(0, 1, 0); (2, 0, 1)])' in other
-    assert [*refuted(asked("G v_lon(SV) > 0", jumping()), bundled_library()).world.vehicles] == ["SV"]
+    assert [*trace_statement(asked("G v_lon(SV) > 0", jumping()), bundled_library()).world.vehicles] == ["SV"]

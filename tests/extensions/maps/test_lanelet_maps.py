@@ -30,7 +30,7 @@ def test_a_bend_with_a_merge_lane_is_a_road(tmp_path: Path) -> None:
     assert found.radius == pytest.approx(400, rel=0.03)
     road = load_road(path)
     assert road.lanes == ("main-1", "main-2", "merge-1")
-    assert road.beside("main-1") == ("main-2", "merge-1")
+    assert road.adjacent_lanes("main-1") == ("main-2", "merge-1")
     assert {x.id for x in road.lanelets_of("merge-1")} == {"32"}
 
 
@@ -55,7 +55,7 @@ def test_edges_are_as_near_to_the_bounds_as_the_answer_says(tmp_path: Path) -> N
 def test_lanes_side_by_side_have_one_edge_in_common(tmp_path: Path) -> None:
     apart = [replace(x, d=(0.1, 3.5)) if x.id < 20 else x for x in RAMP]
     road = load_road(write(tmp_path, *apart, curvature=CURVATURE))
-    assert road.beside("main-1") == ("main-2", "merge-1")
+    assert road.adjacent_lanes("main-1") == ("main-2", "merge-1")
     for x in road.lanelets_of("main-1"):
         assert x.d[1] in {y.d[0] for y in road.lanelets_of("main-2") if y.s == x.s}
 

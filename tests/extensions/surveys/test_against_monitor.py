@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from asking import prove
+from engine_calls import prove
 from extensions.traffic.monitoring.cases import random_traffic
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import load_drive
@@ -22,12 +22,12 @@ from roadproof.extensions.surveys.coverage.traffic import disturbances_in, recor
 from roadproof.extensions.surveys.redundancy import changes_of
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.settings.groups import Budget
+from roadproof.frontends.settings.groups import BudgetSettings
 from roadproof.library.bind import default_values
 from roadproof.library.compose import equivalence, implication
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.scenarios import Scenario, applied
+from roadproof.library.scenarios import Scenario, apply_scenario
 from roadproof.library.specification import Specification
 from roadproof.logic.rewrite import with_values
 from roadproof.questions.basis import Basis
@@ -137,13 +137,13 @@ def implications(home: Specification) -> Iterator[tuple[str, bool]]:
     sets = ("base", "extA", "ext")
     for n in (4, 8):
         for one, other in permutations(sets, 2):
-            above, below = (applied(home, Scenario(n, x)) for x in (one, other))
+            above, below = (apply_scenario(home, Scenario(n, x)) for x in (one, other))
             yield implication(above, below).text, sets.index(one) < sets.index(other)
 
 
 def redundancies(home: Specification) -> Iterator[tuple[str, bool]]:
     """Of the condition on lanes in scenario 4, nothing is needed; of safety and the road, all."""
-    whole = applied(home, Scenario(4, home.set_name))
+    whole = apply_scenario(home, Scenario(4, home.set_name))
     for change in changes_of(home, whole):
         if (
             change.part.startswith(("sameLane", "inAdjLanes", "initSafe", "roadSector", "laneKeep"))
@@ -180,15 +180,15 @@ def test_what_is_proved_is_never_false(kind: Callable[[Specification], Iterator[
 def test_models_go_to_the_vehicles_that_a_formula_has() -> None:
     truck, home = load_vehicle("truck"), bundled_library().select()
     basis = Basis(home, vehicles={"POV": truck, "": load_vehicle("bus")})
-    assert set(basis.search(applied(home, Scenario(4, "base"))).setting.vehicles) == {"POV", ""}
-    assert set(basis.search(applied(home, Scenario(2, "base"))).setting.vehicles) == {""}
-    asked = applied(home, Scenario(4, "base"))
+    assert set(basis.search(apply_scenario(home, Scenario(4, "base"))).setting.vehicles) == {"POV", ""}
+    assert set(basis.search(apply_scenario(home, Scenario(2, "base"))).setting.vehicles) == {""}
+    asked = apply_scenario(home, Scenario(4, "base"))
     assert basis.claim(asked) != Basis(home, vehicles={"SV": truck}).claim(asked)
 
 
 def test_roles_that_no_scenario_has_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(UsageError, match="vehicle XV: scenarios mention POV, POV1, POV2, SV"):
-        basis_of(rp.load(), Budget(), {"XV": "truck"})
+        basis_of(rp.load(), BudgetSettings(), {"XV": "truck"})
     for command in ("overlap", "order", "redundancy", "coverage", "classify"):
         assert main([command, "--vehicle", "XV=truck"]) == 2
         assert "vehicle XV" in capsys.readouterr().err

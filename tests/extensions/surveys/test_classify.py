@@ -17,7 +17,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from asking import prove
+from engine_calls import prove
 from extensions.traffic.monitoring.cases import random_traffic
 from roadproof.engines.search import valid
 from roadproof.engines.search.batches import Engines
@@ -25,11 +25,12 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import judge_file
+from roadproof.extensions.assurance.folder_view import folder_data
 from roadproof.extensions.surveys.classify import simulated
 from roadproof.extensions.surveys.classify.cells import (
-    Asked,
     Axis,
     Cell,
+    ClaimGenerator,
     Outline,
     outline,
     query_of,
@@ -38,7 +39,7 @@ from roadproof.extensions.surveys.classify.cells import (
 )
 from roadproof.extensions.surveys.classify.classes import Classes, plan_of, what_axis, where_axis
 from roadproof.extensions.surveys.classify.division import divide
-from roadproof.extensions.surveys.classify.drives import find_examples, patched, with_zones
+from roadproof.extensions.surveys.classify.drives import find_examples, with_patched_zones, with_zones
 from roadproof.extensions.surveys.classify.question import question_of
 from roadproof.extensions.surveys.classify.simulated import (
     shares_key,
@@ -48,19 +49,18 @@ from roadproof.extensions.surveys.classify.simulated import (
 )
 from roadproof.extensions.surveys.classify.text import claims_of, with_classes, write_classes
 from roadproof.extensions.surveys.classify.traffic_shares import Shares, count_shares
+from roadproof.extensions.traffic.scenario_parts import components
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 from roadproof.frontends.cli.main import main
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library, bundled_library, load_library
-from roadproof.library.scenarios import components
 from roadproof.library.specification import Query, Source, Specification
 from roadproof.library.words import spans
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.questions.basis import Basis
-from roadproof.questions.settle import settle
-from roadproof.questions.views import folder_data
+from roadproof.questions.decide import decide_claims
 from roadproof.runtime.archives import SWITCH, remember
 from roadproof.runtime.budget import BudgetExceeded, Effort, Work
 from roadproof.runtime.version import ANSWERS
@@ -77,13 +77,13 @@ OVERLAPPING = {(1, 5), (3, 6), (4, 8), (4, 6, 8), (6, 8)}
 T = TypeVar("T")
 
 
-def proving(asking: Asked[T], units: float = 1.0) -> T:
+def proving(asking: ClaimGenerator[T], units: float = 1.0) -> T:
     """What claims show that are asked one by one, with so much work for each."""
     engines = Engines(Work(proof=units))
     try:
         _, claim = next(asking)
         while True:
-            _, claim = asking.send(engines.settle(claim)[0])
+            _, claim = asking.send(engines.answer_claim(claim)[0])
     except StopIteration as end:
         shown: T = end.value
         return shown
@@ -198,7 +198,7 @@ def test_rows_that_follow_are_not_said_and_not_denied() -> None:
     cells = {holds: refined(axis, holds, others) for holds, others in found.cells}
     assert cells[1, 2] == Cell((1, 2), (1,), (faster,))
     assert cells[1, 2, 3] == Cell((1, 2, 3), (1, 3), ())
-    assert cells[2,].said == (2,)
+    assert cells[2,].required == (2,)
     assert cells[2, 3] == Cell((2, 3), (3,), (axis.rows[1],))
 
 
@@ -367,15 +367,15 @@ def test_a_cell_in_doubt_is_said_in_full_and_the_run_is_in_doubt(
 ) -> None:
     axis = what_axis(plan_of(BASE, (4, 8)), plan_of(BASE, (4, 8)).groups[0], BASE)
     _, first = next(refine(axis, BASE, "class_4", (4,), (8,)))
-    settle_valid = valid.settle_valid
+    settle_valid = valid.decide_valid
 
     def one_fails(claim: Claim, *more: Any) -> Any:
         if claim.text == first.text:
             fault()
         return settle_valid(claim, *more)
 
-    monkeypatch.setattr(valid, "settle_valid", one_fails)
-    monkeypatch.setattr("roadproof.questions.settle.is_fork_unsafe", lambda: False)
+    monkeypatch.setattr(valid, "decide_valid", one_fails)
+    monkeypatch.setattr("roadproof.questions.decide.is_fork_unsafe", lambda: False)
     line = ["classify", "--among", "4,8", "--no-shares", "--no-pictures", "--jobs", "2"]
     assert main([*line, "--out", str(tmp_path)]) == 20
     printed = capsys.readouterr().out
@@ -409,8 +409,8 @@ def test_an_outline_in_doubt_makes_no_classes_and_leaves_the_folder_alone(
     out = tmp_path / "out"
     shutil.copytree(written, out)
     before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
-    monkeypatch.setattr(valid, "settle_valid", fault)
-    monkeypatch.setattr("roadproof.questions.settle.is_fork_unsafe", lambda: False)
+    monkeypatch.setattr(valid, "decide_valid", fault)
+    monkeypatch.setattr("roadproof.questions.decide.is_fork_unsafe", lambda: False)
     line = ["classify", "--no-pictures", "--jobs", "2", "--out", str(out)]
     # Of one axis alone there is no job that could be lost.
     assert main([*line, "--among", "4,8" if fault is late else "1-8"]) == 20
@@ -422,9 +422,9 @@ def test_an_outline_in_doubt_makes_no_classes_and_leaves_the_folder_alone(
 def test_lost_drives_are_doubts(monkeypatch: pytest.MonkeyPatch) -> None:
     basis = Basis(BASE)
     question = question_of(basis, divide(basis, plan_of(BASE, (4, 8)), 1))
-    monkeypatch.setattr("roadproof.engines.search.ask.ask", die)
-    monkeypatch.setattr("roadproof.questions.settle.is_fork_unsafe", lambda: False)
-    found = question.view(settle(question, hands=2).answers)
+    monkeypatch.setattr("roadproof.engines.search.drive_search.search_drive", die)
+    monkeypatch.setattr("roadproof.questions.decide.is_fork_unsafe", lambda: False)
+    found = question.view(decide_claims(question, executor=2).answers)
     assert {(x.verdict, x.drive is None) for x in found.examples} == {(Verdict.UNKNOWN, True)}
     assert all("its process ended each time" in x.reason for x in found.examples[:1])
     assert {x.verdict for x in found.decisions} == {Verdict.PROVED}
@@ -568,7 +568,7 @@ def test_a_drive_is_put_in_every_place(written: Path) -> None:
     file = load_drive(written / "class_4.json")
     library = bundled_library()
     found = set()
-    for road in patched(file.road, file.drive):
+    for road in with_patched_zones(file.road, file.drive):
         held = [
             judge_file(replace(file, road=road, set_name="base", formula=f"scenario_{n}(SV,POV,L)"), library)
             for n in (4, 12, 20)
@@ -606,7 +606,7 @@ def test_vehicles_side_by_side_may_be_in_three_zones() -> None:
         (Piece(None, Fraction(0), Fraction(0)),),
     )
     drive = Drive({"SV": motion, "POV": replace(motion, d=Fraction(6))})
-    roads = list(patched(load_road("main-2"), drive))
+    roads = list(with_patched_zones(load_road("main-2"), drive))
     assert any({x.zone for x in road.lanelets} == {"main", "merge", "depart"} for road in roads)
     assert all(road.lanes == ("main-1", "main-2") for road in roads)
 
@@ -658,7 +658,7 @@ def test_random_traces_agree_with_the_short_texts(written: Path) -> None:
 
 
 def test_simulated_traffic_lies_in_exactly_one_class(main_road: Classes) -> None:
-    recording = simulate(Traffic(seconds=60, lanes=2), seed=1)
+    recording = simulate(TrafficSettings(seconds=60, lanes=2), seed=1)
     values = default_values(bundled_library())
     text = write_classes(main_road, BASE)
     shares = count_shares(main_road, with_classes(text, BASE), values, [recording])

@@ -7,14 +7,15 @@ from typing import TypeVar
 
 import pytest
 
-from asking import prove
+from engine_calls import prove
 from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.minimal import simplest
 from roadproof.errors import InputError
-from roadproof.evidence.certificate import to_json
+from roadproof.evidence.certificate_file import to_json
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
-from roadproof.extensions.surveys.coverage import found as needed
+from roadproof.evidence.verdict_with_evidence import ProofResult
+from roadproof.extensions.surveys.coverage import gap_drives
 from roadproof.extensions.surveys.coverage.answers import (
     Answers,
     ClassAnswer,
@@ -24,30 +25,30 @@ from roadproof.extensions.surveys.coverage.answers import (
     verdict_on,
     with_counts,
 )
-from roadproof.extensions.surveys.coverage.asking import GapRoads, GroupAsking, ask_need, work_of
 from roadproof.extensions.surveys.coverage.claims import GapClaims
 from roadproof.extensions.surveys.coverage.classes import (
     GapClasses,
     GapGroup,
-    Part,
+    ScenarioPart,
+    changed_definitions,
     claims_of,
+    gap_formula,
     in_either_role,
-    missed,
     parts_of,
-    replaced_in,
     sectors_of,
     sets_between,
     two_vehicle_numbers,
 )
-from roadproof.extensions.surveys.coverage.found import FoundGap, SimpleDrives, Trials, replaced_by
+from roadproof.extensions.surveys.coverage.gap_drives import GapDrive, SimpleDrives, Trials, own_definitions
+from roadproof.extensions.surveys.coverage.gap_search import GapRoads, GapSearch, ask_need, work_of
 from roadproof.extensions.surveys.coverage.simple_drives import HORIZON, simple_drives
-from roadproof.extensions.surveys.extremes.points import Asking
+from roadproof.extensions.surveys.extremes.points import ClaimGenerator
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Source
 from roadproof.logic.show import text
-from roadproof.questions.basis import Basis, ProofResult
+from roadproof.questions.basis import Basis
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.replay import first_breach
 from roadproof.verdict import Verdict
@@ -66,12 +67,12 @@ def of_set(name: str) -> Basis:
     return Basis(LIBRARY.select(name))
 
 
-def answered(asking: Asking[T], claims: GapClaims) -> T:
+def answered(asking: ClaimGenerator[T], claims: GapClaims) -> T:
     """What answers show, each claim settled by itself."""
     try:
         name, claim = next(asking)
         while True:
-            name, claim = asking.send(Engines(work_of(name, claims)).settle(claim)[0])
+            name, claim = asking.send(Engines(work_of(name, claims)).answer_claim(claim)[0])
     except StopIteration as end:
         found: T = end.value
         return found
@@ -84,7 +85,7 @@ def needed_by(basis: Basis, name: str) -> Need:
 
 def without(name: str) -> Verdict:
     """The verdict on coverage of the main road by ``complete`` with one definition as it is in ext."""
-    kept = [n for n in replaced_in(LIBRARY.select("ext"), COMPLETE) if n != name]
+    kept = [n for n in changed_definitions(LIBRARY.select("ext"), COMPLETE) if n != name]
     body = "\n".join(text(COMPLETE.definitions[n]) for n in kept)
     library = build_library([Source("trial", f"set trial extends ext {{\n{body}\n}}")], LIBRARY)
     specification = library.select("trial")
@@ -105,12 +106,12 @@ def car(s: str, d: str, speed: int, *pieces: Piece) -> Motion:
 
 def file_of(drive: Drive, set_name: str = "ext", road: str = "main-2") -> DriveFile:
     specification = LIBRARY.select(set_name)
-    formula = missed(specification, two_vehicle_numbers(specification)).text
+    formula = gap_formula(specification, two_vehicle_numbers(specification)).text
     return DriveFile(None, set_name, formula, F(14), {}, {}, {}, load_road(road), drive)
 
 
 def test_what_the_proposed_set_replaces() -> None:
-    assert sorted(replaced_in(LIBRARY.select("ext"), COMPLETE)) == list(REPLACED)
+    assert sorted(changed_definitions(LIBRARY.select("ext"), COMPLETE)) == list(REPLACED)
     assert two_vehicle_numbers(COMPLETE) == tuple(n for n in range(1, 25) if n % 8 != 2)
     assert sectors_of(COMPLETE)[1] == (9, 11, 12, 13, 14, 15, 16)
 
@@ -128,7 +129,7 @@ def test_the_proof_fails_without_a_definition(name: str) -> None:
 def test_coverage_of_the_main_road_is_proved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     claims = GapClaims(of_set("complete"))
     for number, name in enumerate(("covered-1", "covered-4")):
-        covered, _ = Engines(work_of(name, claims)).settle(claims.covered[name])
+        covered, _ = Engines(work_of(name, claims)).answer_claim(claims.coverage_claims[name])
         assert covered.verdict is Verdict.PROVED
         assert covered.certificate is not None
         (tmp_path / f"{number}.json").write_text(to_json(covered.certificate), "utf-8")
@@ -180,7 +181,7 @@ def test_drives_that_are_missed_without_a_definition(name: str, drive: Drive) ->
 
 
 def test_a_definition_is_shown_needed() -> None:
-    assert sorted(replaced_by(COMPLETE)) == list(REPLACED)
+    assert sorted(own_definitions(COMPLETE)) == list(REPLACED)
     need = needed_by(of_set("complete"), "cutIn")
     assert need.verdict is Verdict.WITNESSED
     assert need.drive is not None
@@ -191,15 +192,15 @@ def test_a_definition_is_shown_needed() -> None:
 def test_what_the_clock_cuts_off_is_in_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
     basis = replace(of_set("complete"), effort=Effort(1.0, timeout=0.0001))
     claims = GapClaims(basis)
-    covered, _ = Engines(work_of("covered-1", claims)).settle(claims.covered["covered-1"])
+    covered, _ = Engines(work_of("covered-1", claims)).answer_claim(claims.coverage_claims["covered-1"])
     assert covered.verdict is Verdict.UNKNOWN
     assert "cut off by the clock" in covered.reason
-    monkeypatch.setattr(needed, "simple_drives", lambda *_: ())
+    monkeypatch.setattr(gap_drives, "simple_drives", lambda *_: ())
     assert needed_by(basis, "cutIn").verdict is Verdict.UNKNOWN
 
 
 def test_a_set_that_extends_nothing_needs_nothing() -> None:
-    assert replaced_by(LIBRARY.select()) == ()
+    assert own_definitions(LIBRARY.select()) == ()
 
 
 def test_a_trial_set_with_nothing_of_a_wider_set_is_not_that_set() -> None:
@@ -308,7 +309,7 @@ def test_no_two_parts_have_one_key(set_name: str) -> None:
     assert len(found) == len(set(found))
 
 
-def weakens(set_name: str, part: Part) -> bool:
+def weakens(set_name: str, part: ScenarioPart) -> bool:
     claim = f"scenario_{part.scenario}(SV,POV,L) -> ({part.without.text})"
     return prove(LIBRARY.select(set_name), claim, Effort(5.0)).verdict is Verdict.PROVED
 
@@ -320,7 +321,7 @@ def test_leaving_a_part_out_weakens_the_scenario(number: int) -> None:
 
 def test_a_part_left_out_of_the_wrong_scenario_does_not() -> None:
     (first, *_) = parts_of(LIBRARY.select("ext"), 4)
-    wrong = Part(3, first.component, first.description, first.condition, first.without, first.finest)
+    wrong = ScenarioPart(3, first.component, first.description, first.condition, first.without, first.finest)
     assert not weakens("ext", wrong)
 
 
@@ -334,26 +335,26 @@ TRIALS = CLAIMS.trials
 
 
 @pytest.fixture(scope="module")
-def known() -> list[FoundGap]:
+def known() -> list[GapDrive]:
     """Gaps of ext from some of the simple drives."""
     return [*SimpleDrives(load_road("main-2"), CLASSES, TRIALS).best(0, 61).values()]
 
 
-def settle(group: GapGroup, known: list[FoundGap] | None = None) -> Answers:
-    return answered(GroupAsking(CLAIMS, ROADS, group, tuple(known or ()), ()).run(), CLAIMS)
+def settle(group: GapGroup, known: list[GapDrive] | None = None) -> Answers:
+    return answered(GapSearch(CLAIMS, ROADS, group, tuple(known or ()), ()).run(), CLAIMS)
 
 
 def group(name: str) -> GapGroup:
     return next(x for x in CLASSES.groups() if x.title == name)
 
 
-def test_simple_drives_stay_within_the_limits_and_reach_danger(known: list[FoundGap]) -> None:
+def test_simple_drives_stay_within_the_limits_and_reach_danger(known: list[GapDrive]) -> None:
     limits = load_vehicle("car")
     assert len(known) >= 5
     for found in known:
         drive = found.file.drive
         assert first_breach(drive, dict.fromkeys(drive.vehicles, limits), None) is None
-        formula = missed(EXT.specification, sectors_of(EXT.specification)[0]).text
+        formula = gap_formula(EXT.specification, sectors_of(EXT.specification)[0]).text
         assert judge_file(replace(found.file, formula=formula), LIBRARY).accepted
         assert found.first == "complete"
 
@@ -370,7 +371,7 @@ def test_an_empty_class_is_proved_and_the_certificate_checked(tmp_path: Path) ->
     assert main(["check", str(path), "--jobs", "1"]) == 0
 
 
-def test_a_class_with_drives_has_no_proof(known: list[FoundGap]) -> None:
+def test_a_class_with_drives_has_no_proof(known: list[GapDrive]) -> None:
     """A wrong claim of emptiness would be the worst mistake."""
     seen = {key for found in known for key in found.classes}
     parts = [p for x in CLASSES.groups() for p in x.parts if p is not None and p.key in seen]
@@ -381,7 +382,7 @@ def test_a_class_with_drives_has_no_proof(known: list[FoundGap]) -> None:
         assert prove(LIBRARY.select("ext"), claim, Effort(1.0)).certificate is None
 
 
-def test_known_drives_are_evidence_for_a_component_and_its_conditions(known: list[FoundGap]) -> None:
+def test_known_drives_are_evidence_for_a_component_and_its_conditions(known: list[GapDrive]) -> None:
     wanted = "laneKeep(POV, L) U danger(SV, POV) in decel"
     whole = group("behaviourPOV_4")
     part = next(p for p in whole.conditions if p.condition == wanted)
@@ -401,13 +402,13 @@ def test_known_drives_are_evidence_for_a_component_and_its_conditions(known: lis
     assert whole.component.key in CLASSES.of(placed)
 
 
-def test_a_gap_is_in_the_classes_of_its_components_and_of_conditions(known: list[FoundGap]) -> None:
+def test_a_gap_is_in_the_classes_of_its_components_and_of_conditions(known: list[GapDrive]) -> None:
     conditions = {p.key: x.title for x in CLASSES.groups() for p in x.conditions}
     for found in known:
         assert {conditions[key] for key in found.classes if key in conditions} <= set(found.classes)
 
 
-def test_roles_exchanged_give_the_same_classes(known: list[FoundGap]) -> None:
+def test_roles_exchanged_give_the_same_classes(known: list[GapDrive]) -> None:
     for found in known[:3]:
         vehicles = found.file.drive.vehicles
         other = Drive({"SV": vehicles["POV"], "POV": vehicles["SV"]})
@@ -418,14 +419,14 @@ def test_where_no_search_is_possible_the_answer_says_so() -> None:
     off_the_grid = replace(EXT, values={"minDanger": F(1, 997)})
     claims = GapClaims(off_the_grid)
     group = GapGroup(claims.groups["behaviourPOV_8"].component)
-    (answer,) = answered(GroupAsking(claims, ROADS, group, (), ()).run(), claims)
+    (answer,) = answered(GapSearch(claims, ROADS, group, (), ()).run(), claims)
     assert answer.verdict is Verdict.UNKNOWN
-    assert "no search on main-2" in answer.reason
+    assert answer.reason.startswith("on main-2: no search: ")
 
 
 def test_a_class_that_the_clock_cuts_off_is_in_doubt() -> None:
     late = GapClaims(replace(EXT, effort=Effort(0.1, timeout=0.0001)), ("complete",))
-    every = answered(GroupAsking(late, ROADS, group("behaviourSV_8"), (), ()).run(), late)
+    every = answered(GapSearch(late, ROADS, group("behaviourSV_8"), (), ()).run(), late)
     assert {x.verdict for x in every} == {Verdict.UNKNOWN}
     assert all("cut off by the clock" in x.reason for x in every)
 
@@ -440,7 +441,7 @@ TRAFFIC = GapTraffic(Path("recordings"), 7, (GAP, GAP, ALONE), 0)
 
 
 def test_how_often_a_class_occurs_and_where() -> None:
-    answer = ClassAnswer(FIRST, verdict=Verdict.UNKNOWN, reason="none on main-2")
+    answer = ClassAnswer(FIRST, verdict=Verdict.UNKNOWN, reason="on main-2: none")
     seen = with_counts(answer, TRAFFIC)
     where = "recording 01, vehicles 3 and 5, frames 10 to 40"
     assert (seen.verdict, seen.in_traffic, seen.trace) == (Verdict.UNKNOWN, 2, where)
@@ -460,7 +461,7 @@ def test_what_is_proved_not_to_be_and_occurs_is_our_fault() -> None:
 
 
 def test_a_trace_is_told_under_all_its_classes() -> None:
-    missed = TRAFFIC.told.missed
+    missed = TRAFFIC.data.missed
     assert [x.classes for x in missed] == [(FIRST.key,), (FIRST.key,), ("",)]
     assert missed[0].pair == "3 and 5, frames 10 to 40"
 

@@ -8,12 +8,13 @@ import pytest
 from hypothesis import given, settings
 
 from judge.cases import drives
-from roadproof.engines.search import ask
+from rejection import rejection_reason
+from roadproof.engines.search import drive_search
 from roadproof.engines.search.batches import Engines
-from roadproof.engines.search.outcome import Outcome, Search
-from roadproof.engines.solve.smt import ask as ask_solver
-from roadproof.evidence.answer import Answer
-from roadproof.evidence.certificate import refusal
+from roadproof.engines.search.outcome import SearchOutcome
+from roadproof.engines.setting import Search
+from roadproof.engines.solve.smt import check_sat as ask_solver
+from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.judged import judge_file
 from roadproof.extensions.surveys import redundancy
 from roadproof.extensions.surveys.redundancy import (
@@ -30,7 +31,7 @@ from roadproof.library.loading import bundled_library
 from roadproof.library.specification import Query, Specification
 from roadproof.questions.basis import Basis
 from roadproof.runtime.budget import Effort
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road
@@ -81,9 +82,9 @@ def decide(number: int, part: str, value: bool, basis: Basis = BASIS) -> ChangeF
         place for place, x in enumerate(asked.changes(number)) if x.part == part and x.value is value
     )
     names, claims = asked.named(number)[first]
-    engines, known = Engines(asked.work), dict[str, Answer]()
+    engines, known = Engines(asked.work), dict[str, ClaimAnswer]()
     for name, claim in zip(names, (claims.equal, claims.moving, claims.apart), strict=True):
-        known[name], _ = engines.settle(claim)
+        known[name], _ = engines.answer_claim(claim)
         if redundancy._decides(known[name]):
             break
     return asked.view(known).findings[number][first]
@@ -97,7 +98,7 @@ def test_adjacent_lanes_are_redundant_in_scenario_3() -> None:
     certificate = finding.shown.certificate
     assert certificate is not None
     assert certificate.claim.startswith("scenario_3(SV, POV, L) <-> ")
-    assert refusal(certificate, bundled_library(), ask_solver) is None
+    assert rejection_reason(certificate, bundled_library(), ask_solver) is None
 
 
 def test_what_a_scenario_needs_is_shown_by_a_drive() -> None:
@@ -124,13 +125,13 @@ def test_scenarios_that_differ_in_their_road_only_share_drives(
     few_changes: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     searched: list[str] = []
-    searching = ask.ask
+    searching = drive_search.search_drive
 
-    def counted(search: Search) -> Outcome:
+    def counted(search: Search) -> SearchOutcome:
         searched.append(search.query.text)
         return searching(search)
 
-    monkeypatch.setattr(ask, "ask", counted)
+    monkeypatch.setattr(drive_search, "search_drive", counted)
     out = tmp_path / "out"
     line = ["redundancy", "--among", "3,11", "--out", str(out), "--jobs", "1", "--json", "-"]
     assert main(line) == 0

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from roadproof.extensions.traffic.formats import pairs as moments
-from roadproof.extensions.traffic.formats.highd import lanes_of_markings
-from roadproof.extensions.traffic.formats.pairs import Pairs, Reach
+from roadproof.extensions.traffic.formats.highd_columns import lanes_of_markings
+from roadproof.extensions.traffic.formats.pairs import Pairs, RssParameters
 from roadproof.extensions.traffic.formats.recording import Recording, beside_by_order, occupy_bands, offsets
 
 LANES = lanes_of_markings((8.5, 12.0, 15.5, 19.0), (23.5, 27.0, 30.5, 34.0))
@@ -61,7 +61,7 @@ def cruise(s: float, v: float, frames: int, d: float = -28.0, rate: int = 25) ->
     return [(s + v * k / rate, d, v, 0.0, 0.0, 0.0) for k in range(frames)]
 
 
-def near_pairs(recording: Recording, pairs: Pairs, reach: Reach) -> Pairs:
+def near_pairs(recording: Recording, pairs: Pairs, reach: RssParameters) -> Pairs:
     """The pairs that are near enough for an RSS violation at some moment."""
     found = [x.pair for x in moments.near_moments(recording, pairs, reach)]
     return pairs.choose(np.unique(np.concatenate(found))) if found else pairs

@@ -8,8 +8,8 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations
 
-from roadproof.extensions.traffic.evaluate.questions import Settings
-from roadproof.extensions.traffic.evaluate.recursive import Trace, TraceReader
+from roadproof.extensions.traffic.evaluate.questions import EvaluationSettings
+from roadproof.extensions.traffic.evaluate.recursive import SampledTrace, TraceReader
 from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.library.elaborate import read_claim
 from roadproof.logic.formula import Formula, transform
@@ -20,7 +20,7 @@ Row = tuple[int, int, int | None, str, int, int, int, str, int]
 
 
 class Reference:
-    def __init__(self, recording: Recording, settings: Settings) -> None:
+    def __init__(self, recording: Recording, settings: EvaluationSettings) -> None:
         self.recording, self.settings = recording, settings
         self.pool: dict[Formula, Formula] = {}
         self.formulas: dict[tuple[str, str, int], Formula] = {}
@@ -47,7 +47,7 @@ class Reference:
         low = max(self.frames[v].start for v in vehicles)
         return range(low, min(self.frames[v].stop for v in vehicles))
 
-    def trace(self, frames: range, vehicles: dict[str, int], lanes: dict[str, int]) -> Trace:
+    def trace(self, frames: range, vehicles: dict[str, int], lanes: dict[str, int]) -> SampledTrace:
         r = self.recording
         rows = {n: [int(r.start[v] + f - r.first_frame[v]) for f in frames] for n, v in vehicles.items()}
         signals = {
@@ -56,7 +56,7 @@ class Reference:
             for x in ("s", "d", "v_lon", "v_lat", "a_lon")
         }
         sizes = {(x, n): float(getattr(r, x)[v]) for n, v in vehicles.items() for x in ("length", "width")}
-        return Trace(
+        return SampledTrace(
             Fraction(1, r.rate), len(frames), signals, sizes, dict(self.given(rows, vehicles, lanes))
         )
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.extensions.traffic.formats.samples import HEADER
-from roadproof.world.road import Lanelet, Road, pairs
+from roadproof.world.road import Lanelet, Road, adjacency
 from roadproof.world.signals import RECORDED
 
 TWO = (
@@ -42,7 +42,7 @@ def lower_road(recording: Recording) -> Road:
         if x.d is not None
     ]
     names = [x.name for x in lanes]
-    return Road("lower", tuple(lanelets), pairs(pairwise(names)))
+    return Road("lower", tuple(lanelets), adjacency(pairwise(names)))
 
 
 def csv_of(recording: Recording, kinds: bool = True) -> str:

@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from roadproof.runtime.xml_element import Element
+from roadproof.extensions.maps.xml_element import Element
 
 Node = ElementTree.Element
 Way = tuple[tuple[str, str], ...]

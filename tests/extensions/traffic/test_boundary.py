@@ -19,16 +19,16 @@ from extensions.traffic.test_evaluate import planted_traffic
 from planting import plant as plant_fault
 from roadproof.extensions.exchange.commonroad import read_commonroad
 from roadproof.extensions.traffic.evaluate import boundary, detectors
-from roadproof.extensions.traffic.evaluate.boundary import Bounds, TraceQuestions, bounds_of
+from roadproof.extensions.traffic.evaluate.boundary import TraceQuestions, TruthBounds, truth_bounds
 from roadproof.extensions.traffic.evaluate.detectors import Detection, find_detections
 from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.extensions.traffic.evaluate.matching import PossibleMatch
 from roadproof.extensions.traffic.evaluate.questions import (
+    EvaluationQuestions,
+    EvaluationSettings,
     MonitorKey,
-    Questions,
-    Settings,
-    ask,
     askable,
+    compile_questions,
     default_settings,
 )
 from roadproof.extensions.traffic.evaluate.recheck import recheck
@@ -47,12 +47,12 @@ from roadproof.extensions.traffic.formats.recording import (
 )
 from roadproof.extensions.traffic.report.research_questions import answer_questions
 from roadproof.extensions.traffic.report.traffic import results_tables
-from roadproof.extensions.traffic.simulate.planting import Place, plant
+from roadproof.extensions.traffic.scenario_parts import COMPARISON
+from roadproof.extensions.traffic.simulate.planting import PlantingPlace, plant
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
-from roadproof.extensions.traffic.simulate.traffic import Traffic as Simulated
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings as Simulated
 from roadproof.library.loading import build_library, bundled_library
-from roadproof.library.scenarios import COMPARISON
 from roadproof.library.specification import Source
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -78,16 +78,16 @@ def clothoid(s: Floats, d: Floats) -> tuple[Floats, Floats, Floats]:
 @pytest.fixture(scope="module")
 def traffic() -> Recording:
     """Lower lanes only, with planted drives; the road is moved so that the middle lane is on the line."""
-    recording = simulate(Traffic(seconds=24, lane_width=3.5, section=420), seed=4)
+    recording = simulate(TrafficSettings(seconds=24, lane_width=3.5, section=420), seed=4)
     right = min(lane.d[0] for lane in recording.lanes if lane.direction == 2 and lane.d)
     for drive, frame in ((cut_in(), 20), (braking(), 200), (swerve(), 380)):
-        recording, _ = plant(recording, drive, Place(2, frame, 6, 10.0, right))
+        recording, _ = plant(recording, drive, PlantingPlace(2, frame, 6, 10.0, right))
     ours = keep_vehicles(recording, recording.direction == 2)
     return replace(ours, first_frame=ours.first_frame - ours.first_frame.min())
 
 
 def found(recording: Recording) -> Findings:
-    return evaluate_recording(recording, ask(default_settings(), recording.rate))
+    return evaluate_recording(recording, compile_questions(default_settings(), recording.rate))
 
 
 def key(findings: Findings) -> set[tuple[object, ...]]:
@@ -140,7 +140,7 @@ def test_the_way_between_two_vehicles_is_off_by_no_more_than_said() -> None:
             slack = Slack(np.zeros(2), np.zeros(2), np.array([0.1, 0.1 + apart]), np.full(2, abs(d)))
             compare = Compare(t.subtract(t.Signal("s", "POV"), t.Signal("s", "SV")), ">", t.number(0))
             rows = {"SV": np.array([[0]]), "POV": np.array([[1]])}
-            said = boundary._off(compare, slack, rows)[0, 0]
+            said = boundary._place_error(compare, slack, rows)[0, 0]
             assert abs(radius * apart - (radius - d) * apart) <= said + 1e-9
 
 
@@ -160,7 +160,7 @@ def bounds(recording: Recording, formula: Formula) -> tuple[bool, bool]:
     one = np.array([0])
     assert recording.slack is not None
     asked = TraceQuestions({"it": formula}, {"SV": one, "POV": one + 1}, one, one + 9, {}, {}, "truncated")
-    found = bounds_of(recording, recording.slack, asked)["it"]
+    found = truth_bounds(recording, recording.slack, asked)["it"]
     return bool(found.surely[0]), bool(found.perhaps[0])
 
 
@@ -210,7 +210,7 @@ def measured(recording: Recording, off: float = 0.3) -> Recording:
     return replace(recording, slack=Slack(each, each, np.zeros_like(each), np.zeros_like(each)))
 
 
-def questions_to(recording: Recording, questions: Questions) -> TraceQuestions[MonitorKey]:
+def questions_to(recording: Recording, questions: EvaluationQuestions) -> TraceQuestions[MonitorKey]:
     """All questions about pairs, to all traces on which danger arises."""
     traces = [x for x in evaluate_recording(recording, questions).traces if x.min_danger == 0]
     place = {int(number): k for k, number in enumerate(recording.vehicle_id)}
@@ -223,7 +223,9 @@ def questions_to(recording: Recording, questions: Questions) -> TraceQuestions[M
     return TraceQuestions(monitor.formulas, vehicles, low, high, lanes, questions.lane_atoms, "truncated")
 
 
-def answers_on(recording: Recording, asked: TraceQuestions[MonitorKey], questions: Questions) -> Answers:
+def answers_on(
+    recording: Recording, asked: TraceQuestions[MonitorKey], questions: EvaluationQuestions
+) -> Answers:
     (monitor,) = questions.pairs
     rows = (asked.vehicles, asked.low, asked.high, monitor.signals, asked.lanes, questions.lane_atoms)
     return monitor.holds(boundary.gather(recording, *rows))
@@ -232,10 +234,10 @@ def answers_on(recording: Recording, asked: TraceQuestions[MonitorKey], question
 @pytest.mark.parametrize("off", [0.05, 0.3])
 def test_matches_stay_within_their_bounds_when_places_move(traffic: Recording, off: float) -> None:
     """The cut of a trace is kept, as the answer is about it."""
-    recording, questions = measured(traffic, off), ask(PAIRS_ONLY, 25)
+    recording, questions = measured(traffic, off), compile_questions(PAIRS_ONLY, 25)
     asked = questions_to(recording, questions)
     assert recording.slack is not None
-    found, now = bounds_of(recording, recording.slack, asked), answers_on(recording, asked, questions)
+    found, now = truth_bounds(recording, recording.slack, asked), answers_on(recording, asked, questions)
     sure = impossible = lost = 0
     for seed in range(12):
         for key, true in answers_on(moved(recording, seed), asked, questions).items():
@@ -300,7 +302,7 @@ def breaches(seeds: range) -> Counter[str]:
         assert recording.slack is not None
         formulas = {k: random_formula(dice, 3) for k in range(12)}
         asked = TraceQuestions(formulas, vehicles, *frames, {}, {}, "truncated")
-        found = bounds_of(recording, recording.slack, asked)
+        found = truth_bounds(recording, recording.slack, asked)
         monitor = compile_formulas(formulas)
         now = monitor.holds(boundary.gather(recording, vehicles, *frames, ("s", "d")))
         for move in range(12):
@@ -344,11 +346,11 @@ PAIRS_ONLY = replace(default_settings(), min_danger=(Fraction(0),), scenarios=(1
 
 def test_possible_matches_are_those_that_the_bounds_allow(traffic: Recording) -> None:
     """Of all traces and questions: a match, a possible match, or neither; and in blocks as all at once."""
-    recording, questions = measured(traffic), ask(PAIRS_ONLY, 25)
+    recording, questions = measured(traffic), compile_questions(PAIRS_ONLY, 25)
     findings = evaluate_recording(recording, questions)
     asked = questions_to(recording, questions)
     assert recording.slack is not None
-    found, now = bounds_of(recording, recording.slack, asked), answers_on(recording, asked, questions)
+    found, now = truth_bounds(recording, recording.slack, asked), answers_on(recording, asked, questions)
     expected = set()
     for key, bound in found.items():
         for k in np.flatnonzero(bound.perhaps & ~now[key]).tolist():
@@ -359,7 +361,7 @@ def test_possible_matches_are_those_that_the_bounds_allow(traffic: Recording) ->
     assert len(findings.possible) == len(expected)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(boundary, "_CELLS", 500)
-        again: dict[MonitorKey, Bounds] = bounds_of(recording, recording.slack, asked)
+        again: dict[MonitorKey, TruthBounds] = truth_bounds(recording, recording.slack, asked)
     for key, bound in found.items():
         assert again[key].surely.tolist() == bound.surely.tolist()
         assert again[key].perhaps.tolist() == bound.perhaps.tolist()
@@ -367,7 +369,7 @@ def test_possible_matches_are_those_that_the_bounds_allow(traffic: Recording) ->
 
 def test_recall_has_bounds(traffic: Recording) -> None:
     """In totals, results.json, tables and text, counted from the rows one by one."""
-    recording, questions = measured(traffic), ask(PAIRS_ONLY, 25)
+    recording, questions = measured(traffic), compile_questions(PAIRS_ONLY, 25)
     findings = evaluate_recording(recording, questions)
     totals = begin_totals(PAIRS_ONLY)
     add_findings(totals, findings)
@@ -409,17 +411,17 @@ Shown = set[tuple[str, int, int, str]]
 
 
 @pytest.fixture(scope="module")
-def questions() -> Questions:
-    return ask(replace(default_settings(), detectors=COMPARISON), 25)
+def questions() -> EvaluationQuestions:
+    return compile_questions(replace(default_settings(), detectors=COMPARISON), 25)
 
 
-def shown(recording: Recording, questions: Questions) -> Shown:
+def shown(recording: Recording, questions: EvaluationQuestions) -> Shown:
     found = find_detections(recording, questions, common_pairs(recording, np.ones(recording.vehicles, bool)))
     assert list(found) == sorted(found, key=lambda x: (x.detector, x.sv, x.pov, x.lane))
     return {(x.detector, x.sv, x.pov, x.lane) for x in found}
 
 
-def brute(recording: Recording, questions: Questions) -> Shown:
+def brute(recording: Recording, questions: EvaluationQuestions) -> Shown:
     """Every pair, role and lane, one trace at a time."""
     reference, found = Reference(recording, questions.settings), set()
     for sv, pov in permutations(range(recording.vehicles), 2):
@@ -464,7 +466,7 @@ BY_HAND = {
 
 
 @pytest.mark.parametrize("name", BY_HAND)
-def test_detectors_by_hand(name: str, questions: Questions) -> None:
+def test_detectors_by_hand(name: str, questions: EvaluationQuestions) -> None:
     sv, pov, expected = BY_HAND[name]
     recording = make_recording([Track(2, 1, sv), Track(2, 1, pov)])
     found = shown(recording, questions)
@@ -476,13 +478,17 @@ def test_detectors_by_hand(name: str, questions: Questions) -> None:
 @pytest.fixture(scope="module")
 def busy() -> tuple[Recording, Shown]:
     recording = simulate(Simulated(seconds=7, flow=1200, lane_width=3.5), seed=3)
-    recording, _ = plant(recording, cut_in(), Place(2, 5, Fraction(6), 10.0, -34.0))
-    recording, _ = plant(recording, braking(), Place(1, 5, Fraction(6), -410.0, 8.5))
+    recording, _ = plant(recording, cut_in(), PlantingPlace(2, 5, Fraction(6), 10.0, -34.0))
+    recording, _ = plant(recording, braking(), PlantingPlace(1, 5, Fraction(6), -410.0, 8.5))
     recording = replace(recording, kind=np.full(recording.vehicles, "Car"))
-    return recording, brute(recording, ask(replace(default_settings(), detectors=COMPARISON), 25))
+    return recording, brute(
+        recording, compile_questions(replace(default_settings(), detectors=COMPARISON), 25)
+    )
 
 
-def test_simulated_traffic_against_brute_force(busy: tuple[Recording, Shown], questions: Questions) -> None:
+def test_simulated_traffic_against_brute_force(
+    busy: tuple[Recording, Shown], questions: EvaluationQuestions
+) -> None:
     recording, expected = busy
     assert shown(recording, questions) == expected
     assert len({x[0] for x in expected}) >= 2
@@ -493,7 +499,7 @@ def test_simulated_traffic_against_brute_force(busy: tuple[Recording, Shown], qu
 
 
 def test_one_lane_only_is_caught(
-    busy: tuple[Recording, Shown], questions: Questions, monkeypatch: pytest.MonkeyPatch
+    busy: tuple[Recording, Shown], questions: EvaluationQuestions, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Planted fault: only the rightmost of the lanes that may be asked for is."""
     recording, expected = busy
@@ -510,13 +516,13 @@ def test_one_lane_only_is_caught(
 def test_own_detector_is_asked_of_all_pairs() -> None:
     text = "def faraway(SV, POV: vehicle, L: lane) := atLane(SV, L) and s(POV) - s(SV) > 350 m"
     library = build_library([Source("mine.spec", text)], bundled_library())
-    mine = ask(replace(default_settings(library), detectors=("faraway",)), 25)
+    mine = compile_questions(replace(default_settings(library), detectors=("faraway",)), 25)
     assert mine.sight is None
     recording = make_recording([Track(2, 1, cruise(0, 30, 9)), Track(2, 1, cruise(360, 30, 9, d=-24.5))])
     assert shown(recording, mine) == {("faraway", 1, 2, "7")}
 
 
-def test_counts_are_of_unordered_pairs(questions: Questions) -> None:
+def test_counts_are_of_unordered_pairs(questions: EvaluationQuestions) -> None:
     recording = make_recording([Track(2, 1, x) for x in BY_HAND["braking hard"][:2]])
     findings = evaluate_recording(recording, questions)
     assert {x.detector for x in findings.detections} == {"decel_thw", "decel_ttc", "decel_free"}
@@ -530,7 +536,7 @@ def test_counts_are_of_unordered_pairs(questions: Questions) -> None:
 
 def test_no_detectors_unless_asked_for() -> None:
     recording = make_recording([Track(2, 1, x) for x in BY_HAND["braking hard"][:2]])
-    assert evaluate_recording(recording, ask(default_settings(), 25)).detections == ()
+    assert evaluate_recording(recording, compile_questions(default_settings(), 25)).detections == ()
 
 
 # --- Road sectors: which scenarios are asked of which recording, and what is counted where ----------
@@ -551,8 +557,8 @@ def everywhere(recording: Recording, zone: np.uint32) -> Recording:
     return replace(recording, zones=np.full(len(recording.zones), zone, np.uint32))
 
 
-def findings_of(recording: Recording, settings: Settings = SETTINGS) -> Findings:
-    questions = ask(settings, recording.rate, recording.zone_names)
+def findings_of(recording: Recording, settings: EvaluationSettings = SETTINGS) -> Findings:
+    questions = compile_questions(settings, recording.rate, recording.zone_names)
     findings = evaluate_recording(recording, questions)
     assert [*recheck(recording, questions, findings)] == []
     return findings

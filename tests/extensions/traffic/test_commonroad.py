@@ -20,7 +20,7 @@ from roadproof.extensions.exchange.commonroad import read_commonroad
 from roadproof.extensions.maps.lines import even_line
 from roadproof.extensions.traffic.formats.line_coordinates import project
 from roadproof.extensions.traffic.formats.measured_roads import boxes_of, inside, overlap, triangles_of
-from roadproof.extensions.traffic.formats.neighbours import find_overlaps
+from roadproof.extensions.traffic.formats.overlaps import find_overlaps
 from roadproof.extensions.traffic.formats.plausible import LARGEST_SIZE
 from tables import read_table
 

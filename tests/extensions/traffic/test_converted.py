@@ -97,7 +97,7 @@ def test_every_difference_is_seen(simulated: Path) -> None:
         values[-1] = "x" if name == "kind" else ~values[-1] if name == "inside" else values[-1] + 1
         assert not same_recording(recording, replace(recording, **{name: values})), name
     others = {"rate": 1, "notes": ("x",), "beside": frozenset(), "lanes": (), "lanelets": ()}
-    more = {"own": {"x": recording.s}, "moments": np.arange(3), "label": np.array(["x"])}
+    more = {"custom_signals": {"x": recording.s}, "moments": np.arange(3), "label": np.array(["x"])}
     for name, value in (others | more).items():
         assert not same_recording(recording, replace(recording, **{name: value})), name
 

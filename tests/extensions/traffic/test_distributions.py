@@ -13,7 +13,11 @@ from extensions.traffic.board import at, init, lane, put, rows
 from roadproof.errors import InputError
 from roadproof.extensions.catalogue.reading import read_catalogue
 from roadproof.extensions.exchange.openscenario import read_recording
-from roadproof.extensions.exchange.storyboard.distributions import MOST, numbered, read_distribution
+from roadproof.extensions.exchange.storyboard.distributions import (
+    MOST,
+    numbered_scenario_path,
+    read_distribution,
+)
 from roadproof.extensions.traffic.formats.sources import find_source, find_sources
 
 DECLARED = (
@@ -73,7 +77,7 @@ def test_all_combinations(tmp_path: Path) -> None:
     speeds, sides, places = (10, 10.1, 10.2, 10.3), (-1, -3), (50, 70)
     wanted = [(v, side, s) for v in speeds for side in sides for s in places]
     assert [tuple(float(x[y]) for y in ("v", "side", "where")) for x in found] == wanted
-    ego = rows(numbered(path, 8))["Ego"]
+    ego = rows(numbered_scenario_path(path, 8))["Ego"]
     assert at(ego, 1, "v_lon") == pytest.approx(10.1)
     assert at(ego, 1, "s") == pytest.approx(72 + 10.1)
     assert at(ego, 1, "d") == pytest.approx(-9)
@@ -114,7 +118,7 @@ def test_constraints_leave_sets_out(tmp_path: Path) -> None:
     path = logical(tmp_path, f"<Deterministic>{one('v', SPEEDS)}</Deterministic>", groups)
     assert [x["v"] for x in values(path)] == ["10.1", "10.2"]
     assert [x.name for x in find_sources(path)] == ["cars#2", "cars#3"]
-    assert read_distribution(path).told == "2 of 4 scenarios of cars.xosc are read"
+    assert read_distribution(path).note == "2 of 4 scenarios of cars.xosc are read"
 
 
 def test_constraints_may_use_other_parameters(tmp_path: Path) -> None:
@@ -137,7 +141,7 @@ def test_of_many_combinations_some_are_drawn(tmp_path: Path) -> None:
     assert found.total == 10_000
     assert len(set(found.numbers)) == MOST
     assert found.numbers == read_distribution(path).numbers
-    assert found.told == f"{MOST} of 10000 scenarios of cars.xosc are read, of {MOST} that were drawn"
+    assert found.note == f"{MOST} of 10000 scenarios of cars.xosc are read, of {MOST} that were drawn"
     speeds = [float(found.values(x)["v"]) for x in found.numbers]
     assert fmean(speeds) == pytest.approx(50.5, abs=4)
 
@@ -186,7 +190,7 @@ def test_a_seed_says_which_samples(tmp_path: Path) -> None:
     first = values(path)
     path.write_text(path.read_text("utf-8").replace('randomSeed="3"', 'randomSeed="4"'), "utf-8")
     assert values(path) != first
-    speed = at(rows(numbered(path, 5))["Ego"], 0, "v_lon")
+    speed = at(rows(numbered_scenario_path(path, 5))["Ego"], 0, "v_lon")
     assert np.isclose(speed, float(values(path)[4]["v"]))
 
 
@@ -211,5 +215,5 @@ def test_a_seed_says_which_samples(tmp_path: Path) -> None:
 def test_refusals(inside: str, told: str, tmp_path: Path) -> None:
     path = logical(tmp_path, inside)
     with pytest.raises(InputError) as error:
-        read_recording(numbered(path, 1))
+        read_recording(numbered_scenario_path(path, 1))
     assert told in str(error.value)

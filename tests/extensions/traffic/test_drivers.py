@@ -19,7 +19,7 @@ from extensions.traffic.make_recording import Track, cruise, make_recording
 from extensions.traffic.test_windows import cut
 from planting import plant
 from roadproof.errors import UsageError
-from roadproof.extensions.drivers.driving import DriverSettings
+from roadproof.extensions.drivers.driver_settings import DriverSettings
 from roadproof.extensions.drivers.lines import SIDES, Side
 from roadproof.extensions.drivers.manoeuvres import KMH, MANOEUVRES, Manoeuvre, Plane, line
 from roadproof.extensions.drivers.models import MODELS, SCENARIOS, course_in, foreseen
@@ -27,14 +27,18 @@ from roadproof.extensions.drivers.preventable.beside import beside_boundary
 from roadproof.extensions.traffic.evaluate import foretelling
 from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording, evaluate_windows
 from roadproof.extensions.traffic.evaluate.matching import Match
-from roadproof.extensions.traffic.evaluate.questions import Questions, Settings, ask
+from roadproof.extensions.traffic.evaluate.questions import (
+    EvaluationQuestions,
+    EvaluationSettings,
+    compile_questions,
+)
 from roadproof.extensions.traffic.evaluate.recheck import recheck, trace_of
 from roadproof.extensions.traffic.evaluate.recursive import TraceReader as Plain
 from roadproof.extensions.traffic.evaluate.traces import gather
 from roadproof.extensions.traffic.formats.recording import Integers, Recording
 from roadproof.extensions.traffic.formats.write_highd import write_highd
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 from roadproof.frontends.cli.main import main
 
 DRIVERS = ("r157", "careful", "rss", "eu1426")
@@ -49,15 +53,15 @@ PASSED["preventable", "cut-in"] = {(1, BEFORE, "undecided")}
 EACH = [(name, x) for name in MANOEUVRES for x in DRIVERS if name in MODELS[x].manoeuvres]
 
 
-def questions_with(**options: str) -> Questions:
-    known = Settings(
+def questions_with(**options: str) -> EvaluationQuestions:
+    known = EvaluationSettings(
         library(), options, values(), ("base", "ext"), (Fraction(0),), (1, 2, 4), drivers=DRIVERS
     )
-    return ask(known, 25)
+    return compile_questions(known, 25)
 
 
 @pytest.fixture(scope="module")
-def questions() -> Questions:
+def questions() -> EvaluationQuestions:
     return questions_with()
 
 
@@ -73,7 +77,7 @@ def drives(name: str, model: str, side: Side, **options: str) -> list[tuple[dict
     return [(at, recorded(kind, model, at, DriverSettings(values(), home.options))) for at in near]
 
 
-def told(recording: Recording, asked: Questions, model: str) -> set[tuple[int, int | None, str]]:
+def told(recording: Recording, asked: EvaluationQuestions, model: str) -> set[tuple[int, int | None, str]]:
     """Scenario, frame and label of each match of vehicle 1 as SV."""
     found = evaluate_recording(recording, asked).matches
     place = asked.settings.drivers.index(model)
@@ -83,7 +87,7 @@ def told(recording: Recording, asked: Questions, model: str) -> set[tuple[int, i
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize(("name", "model"), EACH)
 def test_drives_on_both_sides_of_the_boundary(
-    questions: Questions, name: str, model: str, side: Side
+    questions: EvaluationQuestions, name: str, model: str, side: Side
 ) -> None:
     number, seen = SCENARIOS[name], 0
     for _, recording in drives(name, model, side):
@@ -93,7 +97,7 @@ def test_drives_on_both_sides_of_the_boundary(
     assert seen
 
 
-def test_a_reading_moves_the_boundary(questions: Questions) -> None:
+def test_a_reading_moves_the_boundary(questions: EvaluationQuestions) -> None:
     """What is perceived later is unpreventable from farther away."""
     found = drives("cut-in", "careful", "unpreventable", cc_perception="distance")
     _, recording = max(found, key=lambda x: x[0]["dx0"])
@@ -102,7 +106,7 @@ def test_a_reading_moves_the_boundary(questions: Questions) -> None:
     assert told(recording, questions, "careful") == {(1, BEFORE, "preventable")}
 
 
-def test_against_the_recursive_monitor(questions: Questions) -> None:
+def test_against_the_recursive_monitor(questions: EvaluationQuestions) -> None:
     """Where SV drives as a model the label is what the plain evaluator says of its formula."""
     checked = 0
     for name, model in EACH:
@@ -113,7 +117,7 @@ def test_against_the_recursive_monitor(questions: Questions) -> None:
     assert checked >= 12
 
 
-def _checked(recording: Recording, match: Match, asked: Questions, driver: str) -> int:
+def _checked(recording: Recording, match: Match, asked: EvaluationQuestions, driver: str) -> int:
     name = course_in(match.scenario)
     if name is None or match.begun is None:
         return 0
@@ -142,7 +146,7 @@ def _array(number: int) -> Integers:
 @pytest.mark.parametrize("name", MANOEUVRES)
 def test_a_controller_is_followed_in_matches(name: str) -> None:
     """The label is what becomes of the frames of the match when the fuzzy safety model drives SV."""
-    asked = ask(replace(questions_with().settings, drivers=("fsm",)), 25)
+    asked = compile_questions(replace(questions_with().settings, drivers=("fsm",)), 25)
     seen = set()
     for side in SIDES:
         for _, recording in drives(name, "careful", side)[:2]:
@@ -154,7 +158,7 @@ def test_a_controller_is_followed_in_matches(name: str) -> None:
     assert seen <= {"preventable", "unpreventable", "undecided"}
 
 
-def test_what_is_never_foreseen(questions: Questions) -> None:
+def test_what_is_never_foreseen(questions: EvaluationQuestions) -> None:
     """POV drifts in without a speed across; it is in the way of SV, which comes nearer, and never brakes."""
     (_, recording), *_ = drives("cut-in", "careful", "unpreventable")
     drifting = replace(recording, v_lat=0 * recording.v_lat)
@@ -163,7 +167,7 @@ def test_what_is_never_foreseen(questions: Questions) -> None:
     assert told(slow, questions, "careful") == {(4, None, "not foreseen")}
 
 
-def test_what_begins_late_is_put_into_the_same_motion(questions: Questions) -> None:
+def test_what_begins_late_is_put_into_the_same_motion(questions: EvaluationQuestions) -> None:
     """POV is given a speed across only late; places, which it has from the beginning, decide."""
     (_, recording), *_ = drives("cut-in", "careful", "unpreventable")
     frames = np.tile(np.arange(len(recording.s) // 2), 2)
@@ -171,7 +175,7 @@ def test_what_begins_late_is_put_into_the_same_motion(questions: Questions) -> N
     assert told(late, questions, "careful") == {(1, BEFORE + 36, "unpreventable")}
 
 
-def test_check_names_a_label_that_is_wrong(questions: Questions) -> None:
+def test_check_names_a_label_that_is_wrong(questions: EvaluationQuestions) -> None:
     ((_, recording), *_) = drives("cut-in", "careful", "unpreventable")
     found = evaluate_recording(recording, questions)
     assert list(recheck(recording, questions, found)) == []
@@ -190,8 +194,8 @@ def test_check_names_a_label_that_is_wrong(questions: Questions) -> None:
 @pytest.mark.parametrize(
     ("owner", "name", "right", "wrong"),
     [
-        (foretelling, "_begun", "begins.argmax(axis=0)", "begins.argmax(axis=0) + 1"),
-        (foretelling, "_begun", "begins.any(axis=0)", "~begins.any(axis=0)"),
+        (foretelling, "_first_frames", "begins.argmax(axis=0)", "begins.argmax(axis=0) + 1"),
+        (foretelling, "_first_frames", "begins.any(axis=0)", "~begins.any(axis=0)"),
         (foretelling, "label_of", "x == driver", "x != driver"),
         (foretelling, "label_of", "scene is None", "scene is not None"),
         (foretelling, "scene_in", "frames, TRACKED", "(frames[0], frames[0] + 51), TRACKED"),
@@ -205,14 +209,14 @@ def test_planted_faults_are_seen(
         _ask_again(questions_with())
 
 
-def _ask_again(asked: Questions) -> None:
+def _ask_again(asked: EvaluationQuestions) -> None:
     test_what_begins_late_is_put_into_the_same_motion(asked)
     for side in SIDES:
         test_drives_on_both_sides_of_the_boundary(asked, "cut-in", "careful", side)
 
 
-def test_the_same_in_windows(questions: Questions) -> None:
-    traffic = simulate(Traffic(seconds=40), seed=6)
+def test_the_same_in_windows(questions: EvaluationQuestions) -> None:
+    traffic = simulate(TrafficSettings(seconds=40), seed=6)
     made = cut(traffic, 6_000)
     assert len(made) > 3
     whole, windows = evaluate_recording(traffic, questions), evaluate_windows(made, questions)
@@ -227,7 +231,7 @@ def test_the_same_in_windows(questions: Questions) -> None:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("recordings")
-    write_highd(simulate(Traffic(seconds=20, lane_width=3.5), seed=7, number=1), path)
+    write_highd(simulate(TrafficSettings(seconds=20, lane_width=3.5), seed=7, number=1), path)
     return path
 
 

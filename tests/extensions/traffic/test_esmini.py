@@ -21,9 +21,9 @@ import pytest
 
 from extensions.traffic.storyboards import BOARDS, CURVATURE, files
 from roadproof.extensions.exchange.storyboard.conditions import TICKS
-from roadproof.extensions.exchange.storyboard.positions import Positions, State, positions_on
-from roadproof.extensions.exchange.storyboard.run import Play
-from roadproof.extensions.exchange.storyboard.stage import open_stage, played
+from roadproof.extensions.exchange.storyboard.play import Play
+from roadproof.extensions.exchange.storyboard.positions import ObjectState, Positions, positions_on
+from roadproof.extensions.exchange.storyboard.stage import open_stage, run_stage
 
 NEAR = 0.05
 """m"""
@@ -59,20 +59,20 @@ def ways(play: Play, name: str, curvature: float, lags: bool) -> list[tuple[floa
 
 
 def places(
-    positions: Positions, state: State, way: tuple[float, float], late: float
+    positions: Positions, state: ObjectState, way: tuple[float, float], late: float
 ) -> list[tuple[float, float]]:
     """The reader's place ``late`` s later in esmini's convention, with and without half a step."""
     lag, change = way[0] - late * state.v_lon, way[1]
     found = []
     for more in (change / TICKS / 2, 0.0):
-        moved = State(state.s - lag + more, state.d, 0, 0, 0, 0, state.forward)
+        moved = ObjectState(state.s - lag + more, state.d, 0, 0, 0, 0, state.forward)
         found.append(positions.pose_of(moved)[:2])
     return found
 
 
 @pytest.mark.parametrize("name", BOARDS)
 def test_positions_are_those_of_esmini(name: str, tmp_path: Path) -> None:
-    stage, play = played(open_stage(files(tmp_path, name)))
+    stage, play = run_stage(open_stage(files(tmp_path, name)))
     assert stage.document.left_out() == ()
     positions = positions_on(stage.document, stage.road)
     bend = BOARDS[name][2] == "bend"

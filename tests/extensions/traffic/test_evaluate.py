@@ -13,6 +13,7 @@ from extensions.traffic.drives import braking, cut_in, cut_out, late_cut_out, sw
 from extensions.traffic.make_recording import LANES, Track, cruise, make_recording
 from extensions.traffic.reference import Reference, Row
 from roadproof.errors import InputError, UsageError
+from roadproof.extensions.traffic import scenario_parts
 from roadproof.extensions.traffic.evaluate import disturbances, evaluate
 from roadproof.extensions.traffic.evaluate import questions as module
 from roadproof.extensions.traffic.evaluate.disturbances import NEVER, Disturbances, _last, _Lookup, _next
@@ -21,10 +22,10 @@ from roadproof.extensions.traffic.evaluate.one_trace import cut_trace, read_samp
 from roadproof.extensions.traffic.evaluate.questions import (
     SAFE,
     VIOLATION,
-    Danger,
+    DangerKey,
+    EvaluationQuestions,
     MonitorKey,
-    Questions,
-    ask,
+    compile_questions,
     default_settings,
 )
 from roadproof.extensions.traffic.evaluate.recheck import recheck
@@ -33,15 +34,15 @@ from roadproof.extensions.traffic.formats.neighbours import NONE, find_neighbour
 from roadproof.extensions.traffic.formats.pairs import Pairs
 from roadproof.extensions.traffic.formats.recording import Bools, Recording, keep_vehicles
 from roadproof.extensions.traffic.formats.samples import HEADER
-from roadproof.extensions.traffic.simulate.planting import Place, plant
+from roadproof.extensions.traffic.scenario_parts import lane_owner
+from roadproof.extensions.traffic.simulate.planting import PlantingPlace, plant
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 from roadproof.library import elaborate as elaborating
-from roadproof.library import scenarios
 from roadproof.library.bind import occupies
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.loading import build_library, bundled_library
-from roadproof.library.scenarios import Scenario, lane_owner
+from roadproof.library.scenarios import Scenario
 from roadproof.library.specification import Query, Source, Specification
 from roadproof.logic import show
 from roadproof.logic.formula import Compare
@@ -54,8 +55,8 @@ from roadproof.world.models import load_road
 
 
 @pytest.fixture(scope="module")
-def questions() -> Questions:
-    return ask(default_settings(), 25)
+def questions() -> EvaluationQuestions:
+    return compile_questions(default_settings(), 25)
 
 
 def rows_of(findings: Findings) -> list[Row]:
@@ -67,7 +68,7 @@ def rows_of(findings: Findings) -> list[Row]:
 
 def planted_traffic(direction: int) -> tuple[Recording, dict[str, dict[str, int]]]:
     """A short recording of few cars with three drives in it, and who is who in each."""
-    recording = simulate(Traffic(seconds=40, flow=500, lane_width=3.5), seed=4)
+    recording = simulate(TrafficSettings(seconds=40, flow=500, lane_width=3.5), seed=4)
     drives = {
         "cut-in": cut_in(),
         "braking": braking(),
@@ -82,7 +83,7 @@ def planted_traffic(direction: int) -> tuple[Recording, dict[str, dict[str, int]
         recording, truth = plant(
             recording,
             drive,
-            Place(direction, 20 + 190 * k, Fraction(7 if name == "swerve" else 6), start, right),
+            PlantingPlace(direction, 20 + 190 * k, Fraction(7 if name == "swerve" else 6), start, right),
         )
         who[name] = dict(truth.vehicles)
     return recording, who
@@ -100,7 +101,7 @@ class Case:
 
 
 @pytest.fixture(scope="module", params=[1, 2])
-def case(request: pytest.FixtureRequest, questions: Questions) -> Case:
+def case(request: pytest.FixtureRequest, questions: EvaluationQuestions) -> Case:
     recording, who = planted_traffic(request.param)
     recording = keep_vehicles(recording, recording.direction == request.param)
     reference = Reference(recording, questions.settings)
@@ -108,7 +109,7 @@ def case(request: pytest.FixtureRequest, questions: Questions) -> Case:
     return Case(recording, who, Counter(reference.matches()), sorted(reference.traces()), violating)
 
 
-def agrees(case: Case, questions: Questions) -> bool:
+def agrees(case: Case, questions: EvaluationQuestions) -> bool:
     findings = evaluate_recording(case.recording, questions)
     traces = sorted((t.first, t.second, t.min_danger, t.start_frame, t.end_frame) for t in findings.traces)
     return (Counter(rows_of(findings)), traces, len(findings.violating)) == (
@@ -118,7 +119,7 @@ def agrees(case: Case, questions: Questions) -> bool:
     )
 
 
-def test_against_the_reference(case: Case, questions: Questions) -> None:
+def test_against_the_reference(case: Case, questions: EvaluationQuestions) -> None:
     assert agrees(case, questions)
     assert len({row[8] for row in case.matches}) >= 5
     # Planted drives are found at the right pair, scenario and start, in all sets.
@@ -138,38 +139,40 @@ def test_against_the_reference(case: Case, questions: Questions) -> None:
             assert 590 + 30 < min(late_starts) < 590 + 50
 
 
-def _cut_early(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+def _cut_early(questions: EvaluationQuestions, monkeypatch: pytest.MonkeyPatch) -> EvaluationQuestions:
     return replace(questions, danger_steps=(0, 0))
 
 
-def _start_outside(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+def _start_outside(questions: EvaluationQuestions, monkeypatch: pytest.MonkeyPatch) -> EvaluationQuestions:
     """Triples start in their first common frame, safe or not."""
     monkeypatch.setattr(disturbances._Lookup, "next_safe", lambda self, index, frame, latest: frame)
     return questions
 
 
-def _lane_at_the_end(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+def _lane_at_the_end(questions: EvaluationQuestions, monkeypatch: pytest.MonkeyPatch) -> EvaluationQuestions:
     lane_at = evaluate._lane_at
     monkeypatch.setattr(evaluate, "_lane_at", lambda r, v, frame: lane_at(r, v, r.last_frame[v]))
     return questions
 
 
-def _own_lane_for_scenario_7(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
-    monkeypatch.setattr(module.s, "lane_owner", lambda specification, scenario: "SV")
-    return ask(questions.settings, 25)
+def _own_lane_for_scenario_7(
+    questions: EvaluationQuestions, monkeypatch: pytest.MonkeyPatch
+) -> EvaluationQuestions:
+    monkeypatch.setattr(module.scenario_parts, "lane_owner", lambda specification, scenario: "SV")
+    return compile_questions(questions.settings, 25)
 
 
-def _one_role(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+def _one_role(questions: EvaluationQuestions, monkeypatch: pytest.MonkeyPatch) -> EvaluationQuestions:
     kept = [replace(m, plain={k: v for k, v in m.plain.items() if k.sv == "first"}) for m in questions.pairs]
     return replace(questions, pairs=tuple(kept))
 
 
-def _short_reach(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+def _short_reach(questions: EvaluationQuestions, monkeypatch: pytest.MonkeyPatch) -> EvaluationQuestions:
     assert questions.reach is not None
     return replace(questions, reach=replace(questions.reach, rho=0.0, a_max_lat=0.0))
 
 
-def _swapped_names(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+def _swapped_names(questions: EvaluationQuestions, monkeypatch: pytest.MonkeyPatch) -> EvaluationQuestions:
     monkeypatch.setattr(recorded_pairs, "TRIPLE", ("SV", "POV2", "POV1"))
     return questions
 
@@ -187,16 +190,16 @@ def _swapped_names(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Que
     ],
 )
 def test_planted_faults_are_caught(
-    fault: Callable[[Questions, pytest.MonkeyPatch], Questions],
+    fault: Callable[[EvaluationQuestions, pytest.MonkeyPatch], EvaluationQuestions],
     case: Case,
-    questions: Questions,
+    questions: EvaluationQuestions,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert not agrees(case, fault(questions, monkeypatch))
 
 
-def test_sets_grow_and_matches_are_disturbances(questions: Questions) -> None:
-    recording = simulate(Traffic(seconds=60, lane_width=3.5), seed=8)
+def test_sets_grow_and_matches_are_disturbances(questions: EvaluationQuestions) -> None:
+    recording = simulate(TrafficSettings(seconds=60, lane_width=3.5), seed=8)
     findings = evaluate_recording(recording, questions)
     assert len(findings.matches) > 50
     traces = {(t.first, t.second, t.min_danger): t for t in findings.traces}
@@ -218,7 +221,7 @@ def test_sets_grow_and_matches_are_disturbances(questions: Questions) -> None:
         assert three & four
 
 
-def test_start_and_end_by_hand(questions: Questions) -> None:
+def test_start_and_end_by_hand(questions: EvaluationQuestions) -> None:
     """SV closes in at 10 m/s from 200 m; the RSS distance of 30 and 20 m/s is 84.65 m beside the length."""
     distance = 84.65
     tracks = [Track(2, 5, cruise(0.0, 30.0, 400)), Track(2, 1, cruise(200.0, 20.0, 340))]
@@ -241,7 +244,7 @@ def test_start_and_end_by_hand(questions: Questions) -> None:
         assert [t.min_danger for t in found.traces] == ends
 
 
-def test_start_needs_its_whole_window(questions: Questions) -> None:
+def test_start_needs_its_whole_window(questions: EvaluationQuestions) -> None:
     """Safe for 15 samples only (0.56 s): no start there; for 16 samples (0.6 s): a start."""
     for safe_samples, found in ((15, 0), (16, 1)):
         rest = (-28.0, 30.0, 0.0, 0.0, 0.0)
@@ -251,30 +254,30 @@ def test_start_needs_its_whole_window(questions: Questions) -> None:
         assert sum(t.min_danger == 0 for t in findings.traces) == found
 
 
-def test_trucks_only_on_request(questions: Questions) -> None:
+def test_trucks_only_on_request(questions: EvaluationQuestions) -> None:
     tracks = [Track(2, 1, cruise(0.0, 30.0, 300)), Track(2, 1, cruise(200.0, 20.0, 300), kind="Truck")]
     r = make_recording(tracks)
     assert len(evaluate_recording(r, questions).violating) == 0
-    wide = ask(replace(questions.settings, classes=("Car", "Truck")), 25)
+    wide = compile_questions(replace(questions.settings, classes=("Car", "Truck")), 25)
     assert len(evaluate_recording(r, wide).violating) == 1
     assert evaluate_recording(r, wide).notes == evaluate_recording(r, questions).notes == ()
 
 
-def test_classes_that_no_vehicle_has_are_told(questions: Questions) -> None:
+def test_classes_that_no_vehicle_has_are_told(questions: EvaluationQuestions) -> None:
     """They are found nowhere, and a table of zeros looks like an answer."""
     r = make_recording([Track(2, 1, cruise(0.0, 30.0, 50)), Track(2, 1, cruise(9.0, 30.0, 50), kind="Truck")])
-    wrong = ask(replace(questions.settings, classes=("car", "Bike")), 25)
+    wrong = compile_questions(replace(questions.settings, classes=("car", "Bike")), 25)
     assert evaluate_recording(r, wrong).notes == (
         "no vehicle of class car, Bike: its classes are Car, Truck",
     )
 
 
-def test_prefilter_is_dropped_for_other_dangers(questions: Questions) -> None:
+def test_prefilter_is_dropped_for_other_dangers(questions: EvaluationQuestions) -> None:
     """With a danger of the user's own the pairs are all looked at: this one reaches 300 m."""
     text = "def rssViolation_lon(a, b: vehicle) := s(b) - s(a) <= 300 m and s(a) - s(b) <= 300 m"
     library = build_library([Source("mine.spec", text)], bundled_library())
     settings = replace(questions.settings, library=library)
-    mine = ask(settings, 25)
+    mine = compile_questions(settings, 25)
     assert questions.reach is not None
     assert mine.reach is None
     tracks = [Track(2, 1, cruise(0.0, 30.0, 500)), Track(2, 1, cruise(400.0, 20.0, 500))]
@@ -283,7 +286,7 @@ def test_prefilter_is_dropped_for_other_dangers(questions: Questions) -> None:
     assert len(evaluate_recording(r, mine).violating) == 1
 
 
-def test_empty_and_lonely(questions: Questions) -> None:
+def test_empty_and_lonely(questions: EvaluationQuestions) -> None:
     r = make_recording([Track(2, 1, cruise(0.0, 30.0, 50))])
     findings = evaluate_recording(r, questions)
     assert (findings.violating, findings.traces, findings.matches) == ((), (), ())
@@ -291,7 +294,7 @@ def test_empty_and_lonely(questions: Questions) -> None:
     assert evaluate_recording(none, questions).vehicles == 0
 
 
-def test_off_the_road(questions: Questions) -> None:
+def test_off_the_road(questions: EvaluationQuestions) -> None:
     """A vehicle on no lane is in no lane: danger may arise, but nothing matches, and no lane is named."""
     behind, ahead = cruise(0.0, 30.0, 400, d=-32.5), cruise(200.0, 20.0, 400, d=-34.5)
     findings = evaluate_recording(make_recording([Track(2, 1, behind), Track(2, 1, ahead)]), questions)
@@ -308,9 +311,9 @@ def test_wrong_settings() -> None:
     with pytest.raises(UsageError, match="minDanger"):
         replace(settings, min_danger=(Fraction(-1),))
     with pytest.raises(InputError, match=r"0\.6 s is no multiple of the time step"):
-        ask(settings, 7)
+        compile_questions(settings, 7)
     with pytest.raises(InputError, match="no spec set"):
-        ask(replace(settings, sets=("bass",)), 25)
+        compile_questions(replace(settings, sets=("bass",)), 25)
 
 
 def test_each_claim_is_elaborated_once_and_no_text_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -328,10 +331,10 @@ def test_each_claim_is_elaborated_once_and_no_text_is_read(monkeypatch: pytest.M
         asked[id(specification), show.text(claim)] += 1
         return honest(specification, claim, walk)
 
-    for user in (elaborating, scenarios):
+    for user in (elaborating, scenario_parts):
         monkeypatch.setattr(user, "elaborate", counted)
     monkeypatch.delattr(elaborating, "parse_claim")
-    ask(replace(settings, detectors=scenarios.COMPARISON), 25)
+    compile_questions(replace(settings, detectors=scenario_parts.COMPARISON), 25)
     assert {*asked.values()} <= {1, 2}
     assert asked.total() == 65
 
@@ -350,13 +353,13 @@ def test_each_claim_is_elaborated_once_and_no_text_is_read(monkeypatch: pytest.M
 def test_scenarios_that_recordings_are_not_asked_for(text: str, said: str) -> None:
     library = build_library([Source("mine.spec", text)], bundled_library())
     with pytest.raises(InputError, match=said):
-        ask(replace(default_settings(library), scenarios=(25,)), 25)
+        compile_questions(replace(default_settings(library), scenarios=(25,)), 25)
 
 
 def test_a_scenario_of_ones_own_says_its_vehicles_and_its_lane() -> None:
     text = "def scenario_25(SV, A: vehicle, L: lane) := atLane(A, L)\nlane of A for 25"
     library = build_library([Source("mine.spec", text)], bundled_library())
-    mine = ask(replace(default_settings(library), sets=("ext",), scenarios=(2, 25)), 25)
+    mine = compile_questions(replace(default_settings(library), sets=("ext",), scenarios=(2, 25)), 25)
     assert set(mine.pairs[0].formulas) == {
         MonitorKey("ext", 25, "first", "L1"),
         MonitorKey("ext", 25, "second", "L"),
@@ -364,8 +367,8 @@ def test_a_scenario_of_ones_own_says_its_vehicles_and_its_lane() -> None:
     assert set(mine.triples[0].formulas) == {MonitorKey("ext", 2, "first", "L")}
 
 
-def test_what_is_asked_is_a_value_and_mistakes_show_it_as_text(questions: Questions) -> None:
-    assert set(questions.danger.formulas) == {VIOLATION, SAFE, Danger(0), Danger(1)}
+def test_what_is_asked_is_a_value_and_mistakes_show_it_as_text(questions: EvaluationQuestions) -> None:
+    assert set(questions.danger.formulas) == {VIOLATION, SAFE, DangerKey(0), DangerKey(1)}
     asked = {
         MonitorKey("ext", 7, "first", "L1"),
         MonitorKey("ext", 7, "second", "L"),
@@ -374,22 +377,22 @@ def test_what_is_asked_is_a_value_and_mistakes_show_it_as_text(questions: Questi
     assert asked <= set(questions.pairs[0].formulas)
     assert str(MonitorKey("ext", 7, "first", "L1")) == "ext/7/first"
     with pytest.raises(InputError, match=r"^danger 1: a monitor needs numbers, but x has no value"):
-        compile({Danger(1): Compare(Parameter("x"), "<", number(1))})
+        compile({DangerKey(1): Compare(Parameter("x"), "<", number(1))})
 
 
-def test_of_recordings_is_read_what_the_formulas_speak_of(questions: Questions) -> None:
+def test_of_recordings_is_read_what_the_formulas_speak_of(questions: EvaluationQuestions) -> None:
     assert questions.danger.signals == ("s", "d", "v_lon", "v_lat")
     assert questions.pairs[0].signals == ("s", "d", "v_lon", "v_lat", "a_lon")
     sways = "def decelerates(a: vehicle) := a_lon(a) < 0 or a_lat(a) > 0.1 m/s^2"
     source = Source("mine.spec", f"set mine extends ext {{ {sways} }}")
     library = build_library([source], bundled_library())
-    mine = ask(replace(default_settings(library), sets=("mine",)), 25)
+    mine = compile_questions(replace(default_settings(library), sets=("mine",)), 25)
     assert mine.pairs[0].signals[-1] == "a_lat"
     recording, _ = planted_traffic(1)
     assert evaluate_recording(recording, mine).traces == evaluate_recording(recording, questions).traces != ()
 
 
-def test_only_traces_in_which_danger_arises_are_counted(questions: Questions) -> None:
+def test_only_traces_in_which_danger_arises_are_counted(questions: EvaluationQuestions) -> None:
     @dataclass
     class Answers:
         """A monitor that says of four traces: true, false, undecided, undecided; read otherwise, false."""
@@ -421,18 +424,20 @@ def recording() -> Recording:
 
 
 @pytest.fixture(scope="module")
-def findings(recording: Recording, questions: Questions) -> Findings:
+def findings(recording: Recording, questions: EvaluationQuestions) -> Findings:
     found = evaluate_recording(recording, questions)
     assert {x.pov2 is None for x in found.matches} == {True, False}
     return found
 
 
-def test_what_is_right_is_not_denied(recording: Recording, questions: Questions, findings: Findings) -> None:
+def test_what_is_right_is_not_denied(
+    recording: Recording, questions: EvaluationQuestions, findings: Findings
+) -> None:
     assert list(recheck(recording, questions, findings)) == []
 
 
 def test_a_match_that_was_missed_is_named(
-    recording: Recording, questions: Questions, findings: Findings
+    recording: Recording, questions: EvaluationQuestions, findings: Findings
 ) -> None:
     for match in [x for x in findings.matches if x.pov2 is None][:3]:
         less = replace(findings, matches=tuple(x for x in findings.matches if x != match))
@@ -441,7 +446,9 @@ def test_a_match_that_was_missed_is_named(
         assert f"scenario {match.scenario}: missed" in line
 
 
-def test_a_match_too_many_is_named(recording: Recording, questions: Questions, findings: Findings) -> None:
+def test_a_match_too_many_is_named(
+    recording: Recording, questions: EvaluationQuestions, findings: Findings
+) -> None:
     """Two vehicles in another scenario about the same lane, and three in another lane."""
     others = []
     for match in findings.matches:

@@ -23,7 +23,11 @@ from roadproof.errors import InputError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.extensions.traffic.evaluate.one_trace import read_pair
-from roadproof.extensions.traffic.evaluate.questions import Questions, ask, default_settings
+from roadproof.extensions.traffic.evaluate.questions import (
+    EvaluationQuestions,
+    compile_questions,
+    default_settings,
+)
 from roadproof.extensions.traffic.evaluate.recheck import recheck
 from roadproof.extensions.traffic.formats.exid import NO_LANES, read_exid, read_osm, utm_of
 from roadproof.extensions.traffic.formats.recording import Recording
@@ -55,8 +59,8 @@ def planted(begin: float, rate: int = RATE) -> tuple[Recording, dict[int, tuple[
     return make_recording(tracks, rate), who
 
 
-def everything(rate: int = RATE) -> Questions:
-    return ask(replace(default_settings(), scenarios=tuple(range(1, 25))), rate)
+def everything(rate: int = RATE) -> EvaluationQuestions:
+    return compile_questions(replace(default_settings(), scenarios=tuple(range(1, 25))), rate)
 
 
 def bent(s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -20,7 +20,7 @@ from extensions.traffic.sampled import csv_of, lower_road, toml_of, write_sample
 from roadproof.errors import InputError
 from roadproof.extensions.surveys.coverage.traffic import disturbances_in, recordings_in
 from roadproof.extensions.traffic.evaluate import experiment as module
-from roadproof.extensions.traffic.evaluate.evaluate import Findings, Trace
+from roadproof.extensions.traffic.evaluate.evaluate import DisturbanceTrace, Findings
 from roadproof.extensions.traffic.evaluate.experiment import Experiment, run_experiment
 from roadproof.extensions.traffic.evaluate.matching import Match
 from roadproof.extensions.traffic.evaluate.questions import default_settings
@@ -31,9 +31,9 @@ from roadproof.extensions.traffic.formats.recording import keep_vehicles
 from roadproof.extensions.traffic.formats.samples import read_columns
 from roadproof.extensions.traffic.formats.sources import find_sources
 from roadproof.extensions.traffic.formats.write_highd import write_highd
-from roadproof.extensions.traffic.simulate.planting import Place, plant
+from roadproof.extensions.traffic.simulate.planting import PlantingPlace, plant
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 from roadproof.frontends.cli.main import main
 from roadproof.library.loading import bundled_library
 from roadproof.questions.basis import Basis
@@ -46,7 +46,7 @@ US101 = Path(__file__).parents[4] / "shared" / "data" / "us101"
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("recordings")
     for number in (1, 2, 3):
-        write_highd(simulate(Traffic(seconds=20, lane_width=3.5), seed=6, number=number), path)
+        write_highd(simulate(TrafficSettings(seconds=20, lane_width=3.5), seed=6, number=number), path)
     return path
 
 
@@ -126,13 +126,13 @@ def test_two_jobs_give_the_same_bytes(
     folder: Path, undisturbed: dict[str, bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     workers = []
-    true_answers = module.answers_of
+    true_answers = module.run_jobs
 
-    def answers_of(work: Any, jobs: Any, hands: Executor, **more: Any) -> Any:
+    def run_jobs(work: Any, jobs: Any, hands: Executor, **more: Any) -> Any:
         workers.append(hands.processes)
         return true_answers(work, jobs, hands, **more)
 
-    monkeypatch.setattr(module, "answers_of", answers_of)
+    monkeypatch.setattr(module, "run_jobs", run_jobs)
     run_experiment(Experiment(folder, tmp_path, default_settings(), Executor(2)))
     assert contents(tmp_path) == undisturbed
     assert workers == [2]
@@ -156,7 +156,7 @@ def test_results_of_other_settings_or_files_are_not_reused(folder: Path, tmp_pat
     assert evaluated(settings) == 0
     assert evaluated(replace(settings, values={**settings.values, "rho": Fraction(1)})) == 2
     assert evaluated(settings) == 2
-    write_highd(simulate(Traffic(seconds=21), seed=9, number=1), ours)
+    write_highd(simulate(TrafficSettings(seconds=21), seed=9, number=1), ours)
     assert evaluated(settings) == 1
     (out / "recordings" / "02.json").write_text('{"schema": "roadproof/recording-findings/1"')
     assert evaluated(settings) == 1
@@ -209,7 +209,7 @@ def match(sv: int, pov: int, set_name: str, scenario: int) -> Match:
     ],
 )
 def test_facts_are_checked(matches: list[Match], lanes: tuple[str, str], broken: str | None) -> None:
-    traces = (Trace(1, 2, 0, 1, 50, *lanes, ("main road",)),)
+    traces = (DisturbanceTrace(1, 2, 0, 1, 50, *lanes, ("main road",)),)
     totals = begin_totals(default_settings())
     add_findings(
         totals, Findings("01", 9, 99, ((1, 2),), 0, 1, 0, 0, traces, tuple(matches), (), (), ("main road",))
@@ -247,9 +247,13 @@ def test_us101(tmp_path: Path) -> None:
 
 
 def test_questions_are_compiled_once(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked, ask = [], module.ask
-    monkeypatch.setattr(module, "_asked", {})
-    monkeypatch.setattr(module, "ask", lambda settings, *on: asked.append(on) or ask(settings, *on))
+    asked, honest = [], module.compile_questions
+    monkeypatch.setattr(module, "_compiled", {})
+    monkeypatch.setattr(
+        module,
+        "compile_questions",
+        lambda settings, *on: asked.append(on) or honest(settings, *on),
+    )
     run_experiment(Experiment(folder, tmp_path, default_settings()))
     assert asked == [(25, ("main",))]
 
@@ -263,10 +267,10 @@ FORMATS = {"highD": "01_tracks.csv", "CSV": "01.csv", "Parquet": "01.parquet", "
 def folders(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """The same vehicles, which drive on lower lanes only, in each format; frames are counted from 0."""
     root = tmp_path_factory.mktemp("formats")
-    recording = simulate(Traffic(seconds=20, lane_width=3.5), seed=4)
+    recording = simulate(TrafficSettings(seconds=20, lane_width=3.5), seed=4)
     right = min(lane.d[0] for lane in recording.lanes if lane.direction == 2 and lane.d)
     for drive, frame in ((cut_in(), 20), (braking(), 250)):
-        recording, _ = plant(recording, drive, Place(2, frame, 6, 10.0, right))
+        recording, _ = plant(recording, drive, PlantingPlace(2, frame, 6, 10.0, right))
     ours = keep_vehicles(recording, recording.direction == 2)
     shifted = dataclasses.replace(ours, first_frame=ours.first_frame - ours.first_frame.min())
     write_highd(shifted, root / "highD")

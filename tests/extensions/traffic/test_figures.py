@@ -21,19 +21,19 @@ from roadproof.extensions.surveys.classify.cells import whole_cell
 from roadproof.extensions.surveys.classify.classes import Classes, plan_of, what_axis
 from roadproof.extensions.surveys.classify.text import with_classes, write_classes
 from roadproof.extensions.surveys.classify.traffic_shares import Shares, count_shares
-from roadproof.extensions.traffic.evaluate.evaluate import Findings, Trace
+from roadproof.extensions.traffic.evaluate.evaluate import DisturbanceTrace, Findings
 from roadproof.extensions.traffic.evaluate.experiment import Experiment, run_experiment
 from roadproof.extensions.traffic.evaluate.foretelling import LABELS
 from roadproof.extensions.traffic.evaluate.matching import Match
-from roadproof.extensions.traffic.evaluate.questions import Settings, default_settings
-from roadproof.extensions.traffic.evaluate.results import driver_cells, foretold_rows
-from roadproof.extensions.traffic.evaluate.totals import Counts as RepeatCounts
-from roadproof.extensions.traffic.evaluate.totals import Row, Totals, add_findings, begin_totals
+from roadproof.extensions.traffic.evaluate.questions import EvaluationSettings, default_settings
+from roadproof.extensions.traffic.evaluate.results import driver_cells, driver_label_rows
+from roadproof.extensions.traffic.evaluate.totals import ResultsRow, Totals, add_findings, begin_totals
+from roadproof.extensions.traffic.evaluate.totals import ShownMoments as RepeatCounts
 from roadproof.extensions.traffic.formats.repeats import STEPS, moments_of
 from roadproof.extensions.traffic.formats.sources import find_sources
+from roadproof.extensions.traffic.scenario_parts import COMPARISON
 from roadproof.library.bind import default_values
 from roadproof.library.loading import bundled_library
-from roadproof.library.scenarios import COMPARISON
 
 ROAD = {"main road": range(1, 9), "merge zone": range(9, 17), "departure zone": range(17, 25)}
 SETS = ("base", "extA", "ext")
@@ -285,7 +285,9 @@ SPEAKS = {"r157": {1}, "careful": {1, 2, 4}, "rss": {1, 4}}
 SCENARIOS = (1, 2, 4, 7)
 TWO_SETS = ("base", "ext")
 DANGER_TIMES = (Fraction(0), Fraction(3, 5))
-SETTINGS = Settings(library(), {}, values(), TWO_SETS, DANGER_TIMES, SCENARIOS, drivers=tuple(SPEAKS))
+SETTINGS = EvaluationSettings(
+    library(), {}, values(), TWO_SETS, DANGER_TIMES, SCENARIOS, drivers=tuple(SPEAKS)
+)
 
 
 def random_findings(rng: random.Random, name: str) -> Findings:
@@ -294,7 +296,7 @@ def random_findings(rng: random.Random, name: str) -> Findings:
     pairs = [(a, b) for a in range(1, 7) for b in range(a + 1, 7)]
     for k, (one, other) in product(range(len(DANGER_TIMES)), rng.sample(pairs, 9)):
         sectors = rng.choice([("main",), ("main",), ()])
-        traces.append(Trace(one, other, k, 0, 50, "2", "3", sectors))
+        traces.append(DisturbanceTrace(one, other, k, 0, 50, "2", "3", sectors))
         for set_name, scenario in product(TWO_SETS, SCENARIOS):
             for sv, pov in ((one, other), (other, one)):
                 if rng.random() > 0.25:
@@ -324,7 +326,7 @@ def test_counts_are_those_of_the_matches_one_by_one(seed: int) -> None:
         for driver, label in zip(SPEAKS, x.labels, strict=False)
         if label
     )
-    rows = [*foretold_rows(totals)]
+    rows = [*driver_label_rows(totals)]
     assert len(rows) == len(DANGER_TIMES) * len(TWO_SETS) * sum(map(len, SPEAKS.values()))
     counted = {
         (Fraction(x.min_danger), x.set, x.scenario, x.driver, label): n
@@ -399,7 +401,7 @@ def traces(totals: Totals) -> list[int]:
     return [row.traces for row in merging(totals) if row.set_name == "base"]
 
 
-def merging(totals: Totals) -> list[Row]:
+def merging(totals: Totals) -> list[ResultsRow]:
     """Those of the merge zone: the main lanes of the tiny road lie in it too."""
     return totals.tables["merge zone"]
 

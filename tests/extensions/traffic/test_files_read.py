@@ -10,7 +10,7 @@ import pytest
 
 from extensions.traffic.board import CAR, init, lane, put
 from extensions.traffic.test_topology import urban
-from roadproof.extensions.catalogue.entries import Concrete
+from roadproof.extensions.catalogue.entries import ConcreteTest
 from roadproof.extensions.catalogue.traces import digest_of, files_of, traces_of
 from roadproof.extensions.traffic.formats.sources import find_source
 from roadproof.library.scenarios import PAIR, TRIPLE
@@ -64,7 +64,7 @@ def samples(folder: Path) -> Path:
 def test_every_file_that_is_read_counts(make: Callable[[Path], Path], tmp_path: Path) -> None:
     place = make(tmp_path)
     with opened(tmp_path) as found:
-        for _ in traces_of(Concrete("a", str(place), ""), {*PAIR, *TRIPLE}):
+        for _ in traces_of(ConcreteTest("a", str(place), ""), {*PAIR, *TRIPLE}):
             pass
     assert found
     assert found <= {*files_of(str(place))}

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from roadproof.evidence.drive_file import SCHEMAS_READ
+from roadproof.core_record import DRIVES
 from roadproof.extensions.traffic.formats.table import polars_module
-from roadproof.runtime.archives import archived
+from roadproof.runtime.archives import shipped_answers
 from roadproof.verdict import ExitCode
 
 BASE = Path(__file__).parents[3] / "examples" / "traffic" / "drives" / "scenario-01-base.json"
@@ -20,9 +20,9 @@ BASE = Path(__file__).parents[3] / "examples" / "traffic" / "drives" / "scenario
 def drives() -> Iterator[tuple[str, str]]:
     """A shipped drive of each scenario, by name."""
     seen: set[object] = set()
-    for text in archived("witness").values():
+    for text in shipped_answers("witness").values():
         content = json.loads(text)
-        known = content.get("schema") in SCHEMAS_READ and content.get("set") == "base"
+        known = content.get("schema") in DRIVES and content.get("set") == "base"
         if known and content.get("scenario") is not None and content["scenario"] not in seen:
             seen.add(content["scenario"])
             yield f"{content['scenario']}", text

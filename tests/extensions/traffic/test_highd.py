@@ -13,12 +13,11 @@ import pytest
 from examples import some
 from extensions.traffic.tiny_highd import Files, tiny_files, write_files
 from roadproof.errors import InputError, MissingSolverError
-from roadproof.extensions.traffic.formats.highd import (
+from roadproof.extensions.traffic.formats.highd import find_highd, read_highd
+from roadproof.extensions.traffic.formats.highd_columns import (
     RECORDING_COLUMNS,
     SAMPLE_COLUMNS,
     VEHICLE_COLUMNS,
-    find_highd,
-    read_highd,
 )
 from roadproof.extensions.traffic.formats.recording import Recording, keep_vehicles
 from tables import read_table

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import time
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -30,11 +30,12 @@ from roadproof.extensions.traffic.evaluate.experiment import Experiment, run_exp
 from roadproof.extensions.traffic.evaluate.one_trace import read_samples
 from roadproof.extensions.traffic.evaluate.questions import default_settings
 from roadproof.extensions.traffic.formats.highd import read_highd
+from roadproof.extensions.traffic.formats.windows import TimeWindow, WindowedRecording
 from roadproof.extensions.traffic.formats.write_highd import write_highd
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 from roadproof.frontends.cli.main import main
-from roadproof.runtime.files import hold_folder, write_whole
+from roadproof.runtime.files import lock_folder, write_atomic
 from roadproof.world.models import load_road
 
 TABLES = ("matches.csv", "pairs.csv", "results.json", "results.txt", "comparison.md", "answers.md")
@@ -44,7 +45,7 @@ TABLES = ("matches.csv", "pairs.csv", "results.json", "results.txt", "comparison
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("recordings")
     for number in (1, 2):
-        write_highd(simulate(Traffic(seconds=15, lane_width=3.5), seed=6, number=number), path)
+        write_highd(simulate(TrafficSettings(seconds=15, lane_width=3.5), seed=6, number=number), path)
     return path
 
 
@@ -109,6 +110,34 @@ def test_our_own_fault_names_the_recording(
         run_experiment(Experiment(folder, tmp_path, default_settings()))
 
 
+@pytest.mark.parametrize("while_reading", [True, False])
+def test_a_fault_of_a_window_has_the_name_of_its_file_once(
+    while_reading: bool,
+    folder: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """A reader names the file itself, perhaps another one; nobody else does."""
+    tracks, meta = folder / "01_tracks.csv", folder / "01_tracksMeta.csv"
+
+    def refuse(recording: object) -> Iterator[TimeWindow]:
+        raise InputError(f"{meta}: the file changed" if while_reading else "a value leaves the range")
+        yield
+
+    if while_reading:
+        monkeypatch.setattr(
+            "roadproof.extensions.traffic.formats.source.undivided",
+            lambda x: WindowedRecording(x.rate, x.zone_names, lambda: refuse(x)),
+        )
+    else:
+        monkeypatch.setattr(module, "evaluate_windows", lambda windows, questions: [*refuse(windows)])
+    assert evaluate(folder, tmp_path) == 3
+    message = capsys.readouterr().err.splitlines()[-1]
+    expected = f"{meta}: the file changed" if while_reading else f"{tracks}: a value leaves the range"
+    assert message.endswith(f"roadproof: {expected}")
+
+
 def test_notes_are_on_the_screen_and_in_the_results(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -166,8 +195,8 @@ def test_two_runs_in_one_folder(folder: Path, tmp_path: Path, capsys: pytest.Cap
 
 def test_a_folder_is_let_go_of(tmp_path: Path) -> None:
     for _ in range(2):
-        with hold_folder(tmp_path / "out"):
-            second = hold_folder(tmp_path / "out")
+        with lock_folder(tmp_path / "out"):
+            second = lock_folder(tmp_path / "out")
             with pytest.raises(InputError, match="another run"):
                 second.__enter__()
     assert not list((tmp_path / "out").iterdir())
@@ -190,7 +219,7 @@ def test_a_full_disk_is_called_full(
 
     monkeypatch.setattr(os, "replace", full)
     with pytest.raises(InputError, match=said):
-        write_whole(tmp_path / "file", b"content")
+        write_atomic(tmp_path / "file", b"content")
     assert not list(tmp_path.iterdir())
 
 
@@ -220,7 +249,7 @@ def test_results_of_another_program_are_not_kept(
 ) -> None:
     told: list[str] = []
     run_experiment(Experiment(folder, tmp_path, default_settings()))
-    monkeypatch.setattr(results, "program", lambda: "another program")
+    monkeypatch.setattr(results, "program_digest", lambda: "another program")
     run_experiment(Experiment(folder, tmp_path, default_settings()), told.append)
     assert sum(line.startswith("[") for line in told) == 2
 
@@ -268,20 +297,24 @@ def test_a_recording_under_two_names_counts_once(folder: Path, tmp_path: Path) -
 
 def test_equal_settings_are_compiled_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers get a copy of the settings with every recording."""
-    asked, ask = [], module.ask
-    monkeypatch.setattr(module, "ask", lambda settings, *on: asked.append(on) or ask(settings, *on))
-    monkeypatch.setattr(module, "_asked", {})
+    asked, honest = [], module.compile_questions
+    monkeypatch.setattr(
+        module,
+        "compile_questions",
+        lambda settings, *on: asked.append(on) or honest(settings, *on),
+    )
+    monkeypatch.setattr(module, "_compiled", {})
     settings = replace(default_settings(), scenarios=(3,))
-    question = results.question_mark(settings)
+    question = results.question_digest(settings)
     recording = read_highd(folder, "01")
     for _ in range(3):
         copy = pickle.loads(pickle.dumps(settings))
         assert copy is not settings
-        assert results.question_mark(copy) == question
+        assert results.question_digest(copy) == question
         module.questions_for(copy, question, recording)
     assert asked == [(25, ("main",))]
     other = replace(settings, scenarios=(4,))
-    module.questions_for(other, results.question_mark(other), recording)
+    module.questions_for(other, results.question_digest(other), recording)
     assert asked == [(25, ("main",))] * 2
 
 
@@ -349,16 +382,16 @@ def test_commonroad_files_of_other_kinds(kind: str, tmp_path: Path) -> None:
 HOLD = """
 import sys, time
 from pathlib import Path
-from roadproof.runtime.files import hold_folder
-with hold_folder(Path(sys.argv[1])):
+from roadproof.runtime.files import lock_folder
+with lock_folder(Path(sys.argv[1])):
     print("held", flush=True)
     time.sleep(float(sys.argv[2]))
 """
 LEAVE_A_CHILD = """
 import os, sys, time
 from pathlib import Path
-from roadproof.runtime.files import hold_folder
-with hold_folder(Path(sys.argv[1])):
+from roadproof.runtime.files import lock_folder
+with lock_folder(Path(sys.argv[1])):
     if os.fork() == 0:
         print("held", flush=True)
         time.sleep(float(sys.argv[2]))
@@ -395,13 +428,13 @@ def test_a_run_that_lives_refuses_others_at_once(tmp_path: Path, monkeypatch: py
     holder = started(HOLD, tmp_path, 600.0)
     asked = waiting(monkeypatch, lambda: None)
     try:
-        with pytest.raises(InputError, match="another run is writing"), hold_folder(tmp_path):
+        with pytest.raises(InputError, match="another run is writing"), lock_folder(tmp_path):
             pass
     finally:
         holder.kill()
         holder.wait()
     assert asked == []
-    with hold_folder(tmp_path):
+    with lock_folder(tmp_path):
         pass
 
 
@@ -409,10 +442,10 @@ def test_a_run_that_lives_refuses_others_at_once(tmp_path: Path, monkeypatch: py
 def test_processes_that_a_dead_run_leaves_are_waited_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("roadproof.runtime.files.LETTING_GO", 60.0)
+    monkeypatch.setattr("roadproof.runtime.files.RELEASE_SECONDS", 60.0)
     holder = started(LEAVE_A_CHILD, tmp_path, 1.0)
     assert holder.wait() == 0
-    with hold_folder(tmp_path):
+    with lock_folder(tmp_path):
         pass
 
 
@@ -441,12 +474,12 @@ def test_a_dying_run_is_waited_for(
     fcntl.flock(other, fcntl.LOCK_EX)
     asked = waiting(monkeypatch, lambda: os.close(other))
     if (state, flags, pending) == ("S", 0, (0, 0)):
-        with pytest.raises(InputError, match="another run is writing"), hold_folder(folder):
+        with pytest.raises(InputError, match="another run is writing"), lock_folder(folder):
             pass
         assert asked == []
         os.close(other)
     else:
-        with hold_folder(folder):
+        with lock_folder(folder):
             assert len(asked) == 1
 
 

@@ -20,7 +20,7 @@ from roadproof.errors import InputError, UsageError
 from roadproof.extensions.traffic.evaluate.one_trace import read_pair
 from roadproof.extensions.traffic.formats.recording import Floats
 from roadproof.extensions.traffic.formats.sources import find_source, find_sources
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from tables import read_table
 
 RATE = 25
@@ -115,7 +115,7 @@ def test_cars_far_beside_the_line_of_a_bend_are_left_out(
     expected = {20, 21, 22, 23} - ({20 + far} if lost else set())
     assert expected == {20, 21, 22, 23} & set(read.vehicle_id.tolist())
     names = [x for x in read.notes if "the reference line of the road does not follow their way" in x]
-    told = f"left out 1 of {read.vehicles + 1} vehicles ({20 + far}): {Why.OFF_LINE()}"
+    told = f"left out 1 of {read.vehicles + 1} vehicles ({20 + far}): {ReasonKind.OFF_LINE()}"
     assert names == [told] * lost
     for number, (d, begin) in enumerate(cars, start=20):
         if number in expected:

@@ -27,7 +27,7 @@ from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording
 from roadproof.extensions.traffic.formats.ngsim import PERIOD, read_ngsim
 from roadproof.extensions.traffic.formats.recording import Recording, offsets
 from roadproof.extensions.traffic.formats.sources import find_source, find_sources
-from roadproof.extensions.traffic.formats.straight import of_road, record
+from roadproof.extensions.traffic.formats.straight import of_road, place_recording
 from roadproof.world.models import load_recorded_road
 from roadproof.world.road import Road
 from roadproof.world.signals import RECORDED
@@ -72,7 +72,7 @@ def on_road(recording: Recording, road: Road, rate: int = RATE) -> Recording:
     vehicles = {name: getattr(recording, name) for name in names}
     signals = [getattr(recording, name) for name in RECORDED]
     place = of_road(road, 2, Path("road"))
-    return record(place, "exact", rate, vehicles, np.diff(recording.start), signals)
+    return place_recording(place, "exact", rate, vehicles, np.diff(recording.start), signals)
 
 
 def matches(recording: Recording) -> set[tuple[object, ...]]:

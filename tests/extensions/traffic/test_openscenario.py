@@ -13,14 +13,16 @@ import numpy as np
 import pytest
 
 import roadproof as rp
-from extensions.exchange.exporting.kept import kept
+from extensions.exchange.exporting.shipped_drives import shipped_drives
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.extensions.exchange import openscenario
+from roadproof.extensions.exchange import openscenario, scenario_samples
 from roadproof.extensions.exchange.export.openscenario import files
-from roadproof.extensions.exchange.export.subject import Subject
-from roadproof.extensions.exchange.openscenario import RATE, read_recording, read_scenario
+from roadproof.extensions.exchange.export.subject import ExportSubject
+from roadproof.extensions.exchange.openscenario import read_recording, read_scenario
+from roadproof.extensions.exchange.scenario_samples import RATE
 from roadproof.extensions.exchange.storyboard import curves, stage
+from roadproof.extensions.exchange.storyboard.box import ObjectBox
 from roadproof.extensions.traffic.evaluate.one_trace import read_pair, read_samples
 from roadproof.extensions.traffic.formats.sources import find_source
 from roadproof.world.motion import state_at
@@ -30,11 +32,11 @@ from tables import read_table
 
 NEAR = {"s": 0.012, "d": 0.012, "v_lon": 0.25, "v_lat": 0.25}
 """m and m/s: vertices are rounded to the millimetre, and speeds at them are estimated."""
-SOME = [kept()[f"scenario-{number:02d}-base"] for number in (1, 2, 4, 12, 20)]
+SOME = [shipped_drives()[f"scenario-{number:02d}-base"] for number in (1, 2, 4, 12, 20)]
 
 
 def put(folder: Path, file: DriveFile) -> Path:
-    for name, content in files(Subject("drive", 1, file)).items():
+    for name, content in files(ExportSubject("drive", 1, file)).items():
         (folder / name).write_bytes(content)
     return folder / "drive.xosc"
 
@@ -177,19 +179,19 @@ def test_what_is_wrong_is_said(change: Callable[[str], str], told: str, tmp_path
 
 
 def the_reference_point_is_the_centre(monkeypatch: pytest.MonkeyPatch) -> None:
-    made = stage.Box
-    monkeypatch.setattr(stage, "Box", lambda *told, **limits: made(*told[:4], (0, 0)))
+    made = stage.ObjectBox
+    monkeypatch.setattr(stage, "ObjectBox", lambda *told, **limits: made(*told[:4], (0, 0)))
 
 
 def the_corner_is_the_centre(monkeypatch: pytest.MonkeyPatch) -> None:
-    sampled = openscenario._sampled
+    sampled = scenario_samples.sample_centre_lines
 
-    def shifted(path: Path, boxes: dict[str, openscenario.Box], ways: object) -> object:
+    def shifted(path: Path, boxes: dict[str, ObjectBox], ways: object) -> object:
         table = sampled(path, boxes, ways)  # type: ignore[arg-type]
         table["d"][:] -= table["width"] / 2
         return table
 
-    monkeypatch.setattr(openscenario, "_sampled", shifted)
+    monkeypatch.setattr(openscenario, "sample_centre_lines", shifted)
 
 
 def speeds_of_the_last_vertex(monkeypatch: pytest.MonkeyPatch) -> None:

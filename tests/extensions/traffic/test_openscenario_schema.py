@@ -196,7 +196,7 @@ def is_read(root: Any, node: Any, attribute: str | None) -> bool:
 
 def test_a_reader_that_names_nothing_is_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The negative control: without the list of unread parts, the check above fails."""
-    monkeypatch.setattr(documents, "unread", lambda root, harmless: ())
+    monkeypatch.setattr(documents, "parts_not_read", lambda root, harmless: ())
     with pytest.raises(AssertionError):
         test_each_part_is_read_or_named_or_refused("ScenarioObject", tmp_path, monkeypatch)
 

@@ -18,7 +18,7 @@ from extensions.traffic.tiny_osi import Seen, moments_of, part, write_osi
 from roadproof.errors import InputError
 from roadproof.extensions.exchange.protobuf import WireError, doubles_in, fields_of, integer_in, message_in
 from roadproof.extensions.traffic.formats.sources import find_source
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 
 RATE = 25
 
@@ -190,7 +190,7 @@ def test_who_drives_far_beside_the_line_of_a_bend_is_left_out(far: int, tmp_path
     path, chart = write_osi(tmp_path, at_once(*tracks), RATE), bend_of(tmp_path, 60.0)
     read = find_source(path, road=chart).read()
     assert read.vehicle_id.tolist() == [k for k in range(20, 24) if k != 20 + far]
-    told = f"left out 1 of 4 vehicles ({20 + far}): {Why.OFF_LINE()}"
+    told = f"left out 1 of 4 vehicles ({20 + far}): {ReasonKind.OFF_LINE()}"
     assert told in read.notes
     with pytest.raises(InputError, match=rf"way of 1 of 4 vehicles \({20 + far}\)"):
         find_source(path, strict=True, road=chart).read()

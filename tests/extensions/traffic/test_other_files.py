@@ -17,12 +17,12 @@ from roadproof.extensions.assurance.requirements.yaml_file import read_yaml
 from roadproof.extensions.exchange.commonroad import read_commonroad
 from roadproof.extensions.exchange.openscenario import read_scenario
 from roadproof.extensions.exchange.osi import read_osi
+from roadproof.extensions.maps.xml_reader import read_xml
 from roadproof.extensions.traffic.evaluate.one_trace import read_samples
 from roadproof.extensions.traffic.formats.samples import column_pieces, read_columns
 from roadproof.extensions.traffic.formats.table import frame_of
 from roadproof.library.specification import read_specification
 from roadproof.runtime.files import read_text
-from roadproof.runtime.xml_reader import read_xml
 from roadproof.world.models import load_road, load_vehicle
 
 _TEXT = "frame,id,x\n1,1,1\n"

@@ -24,7 +24,7 @@ from roadproof.extensions.traffic.formats.median import Median
 from roadproof.extensions.traffic.formats.pairs import (
     DetectionRange,
     Pairs,
-    Reach,
+    RssParameters,
     all_moments,
     common_pairs,
     near_moments,
@@ -33,21 +33,21 @@ from roadproof.extensions.traffic.formats.pairs import (
 )
 from roadproof.extensions.traffic.formats.plausible import _worst
 from roadproof.extensions.traffic.formats.recording import Recording
-from roadproof.extensions.traffic.formats.repeats import see_pair
+from roadproof.extensions.traffic.formats.repeats import frame_pair
 from roadproof.extensions.traffic.formats.samples import HEADER
 from roadproof.extensions.traffic.formats.sources import find_sources
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 from roadproof.world.signals import KINDS
 
-REACH = Reach(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0, a_max_lat=1.5, b_min_lat=1.5)
+REACH = RssParameters(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0, a_max_lat=1.5, b_min_lat=1.5)
 
 
 def frames_of(r: Recording, vehicle: int) -> range:
     return range(int(r.first_frame[vehicle]), int(r.last_frame[vehicle]) + 1)
 
 
-def distance(rear: float, front: float, reach: Reach) -> float:
+def distance(rear: float, front: float, reach: RssParameters) -> float:
     """The paper's dRSS_lon."""
     way = rear * reach.rho + reach.a_max * reach.rho**2 / 2
     return max(
@@ -55,7 +55,7 @@ def distance(rear: float, front: float, reach: Reach) -> float:
     )
 
 
-def sideways(v_1: float, v_2: float, reach: Reach, signed: bool = False) -> float:
+def sideways(v_1: float, v_2: float, reach: RssParameters, signed: bool = False) -> float:
     """The paper's dRSS_lat; ``signed`` leaves out what needs no braking."""
     one, other = v_1 + reach.rho * reach.a_max_lat, v_2 - reach.rho * reach.a_max_lat
     squares = (max(0, one) ** 2 + min(0, other) ** 2) if signed else (one**2 + other**2)
@@ -64,7 +64,9 @@ def sideways(v_1: float, v_2: float, reach: Reach, signed: bool = False) -> floa
     )
 
 
-def violates(r: Recording, one: int, other: int, frame: int, reach: Reach, reading: str = "rss") -> bool:
+def violates(
+    r: Recording, one: int, other: int, frame: int, reach: RssParameters, reading: str = "rss"
+) -> bool:
     """rssViolation as the paper writes it, in any of its lateral readings."""
     i, j = (int(r.start[v] + frame - r.first_frame[v]) for v in (one, other))
     sign = 1.0 if reading == "literal" else -1.0
@@ -117,7 +119,7 @@ def test_pairs_and_filter_against_brute_force(r: Recording, seed: int) -> None:
     assert len(pairs) == len(expected)
     for a, b, low, high in zip(pairs.first, pairs.second, pairs.low, pairs.high, strict=True):
         assert (low, high) == (expected[a, b][0], expected[a, b][-1])
-    reach = Reach(*random.uniform([0, 0, 0.5, 0.5, 0, 0.5], [2, 8, 9, 9, 3, 3]).tolist())
+    reach = RssParameters(*random.uniform([0, 0, 0.5, 0.5, 0, 0.5], [2, 8, 9, 9, 3, 3]).tolist())
     near = as_set(near_pairs(r, pairs, reach))
     for reading in ("rss", "literal", "signed"):
         for p, frames in expected.items():
@@ -149,7 +151,7 @@ def test_moments_against_brute_force(r: Recording, rate: int) -> None:
 
 
 def test_simulated_traffic_loses_none() -> None:
-    r = simulate(Traffic(seconds=40), seed=11)
+    r = simulate(TrafficSettings(seconds=40), seed=11)
     pairs = common_pairs(r, np.ones(r.vehicles, bool))
     near = as_set(near_pairs(r, pairs, REACH))
     violating = set()
@@ -207,7 +209,7 @@ def test_a_filter_that_forgets_a_case_is_caught(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_parts_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
-    r = simulate(Traffic(seconds=20), seed=2)
+    r = simulate(TrafficSettings(seconds=20), seed=2)
     pairs = common_pairs(r, r.kind == "Car")
     whole = near_pairs(r, pairs, REACH)
     parts = module._parts
@@ -242,12 +244,12 @@ def test_triples_against_brute_force(r: Recording, seed: int) -> None:
 def test_reach_must_make_sense() -> None:
     r = make_recording([Track(2, 1, cruise(0, 30, 2)), Track(2, 1, cruise(40, 30, 2))])
     with pytest.raises(ValueError, match="b_min"):
-        near_pairs(r, common_pairs(r, np.ones(2, bool)), Reach(0.6, 5, 0, 8, 1, 1))
+        near_pairs(r, common_pairs(r, np.ones(2, bool)), RssParameters(0.6, 5, 0, 8, 1, 1))
 
 
 # --- The pre-filter of pairs at its bounds: sizes, signs and speeds that differ between the two vehicles
 
-SHORT = Reach(rho=0.6, a_max=4.0, b_min=3.0, b_max=7.0, a_max_lat=1.5, b_min_lat=1.2)
+SHORT = RssParameters(rho=0.6, a_max=4.0, b_min=3.0, b_max=7.0, a_max_lat=1.5, b_min_lat=1.2)
 
 
 def along(rear: float, front: float) -> float:
@@ -401,8 +403,8 @@ def test_pairs_are_known_by_the_moments_of_both(tmp_path: Path) -> None:
     seen: dict[int, set[int]] = {}
     for first in range(4):
         for second in range(first + 1, 5):
-            one = see_pair(recording, first, second, False)
-            assert one.keys == see_pair(recording, second, first, False).keys
+            one = frame_pair(recording, first, second, False)
+            assert one.keys == frame_pair(recording, second, first, False).keys
             for key in one.keys:
                 seen.setdefault(key, set()).add(10 * first + second)
     assert seen

@@ -14,17 +14,18 @@ from extensions.traffic.make_recording import Track, cruise, make_recording, nea
 from roadproof.errors import InputError
 from roadproof.extensions.surveys.classify.cells import Cell
 from roadproof.extensions.surveys.classify.classes import Class
-from roadproof.extensions.surveys.classify.drives import Example
+from roadproof.extensions.surveys.classify.drives import ClassExample
 from roadproof.extensions.surveys.classify.traffic_shares import Shares
 from roadproof.extensions.surveys.report import classify
 from roadproof.extensions.traffic.evaluate import disturbances, evaluate
 from roadproof.extensions.traffic.evaluate.detectors import find_detections
-from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.evaluate.questions import compile_questions, default_settings
 from roadproof.extensions.traffic.formats import pairs
-from roadproof.extensions.traffic.formats.pairs import DetectionRange, Reach, common_pairs
+from roadproof.extensions.traffic.formats.pairs import DetectionRange, RssParameters, common_pairs
 from roadproof.extensions.traffic.formats.recording import Recording
+from roadproof.extensions.traffic.scenario_parts import COMPARISON
 from roadproof.library.loading import build_library, bundled_library
-from roadproof.library.scenarios import COMPARISON, PAIR, TRIPLE
+from roadproof.library.scenarios import PAIR, TRIPLE
 from roadproof.library.specification import Source
 from roadproof.library.words import Words
 from roadproof.verdict import Verdict
@@ -87,7 +88,7 @@ def found_at(
     text = f"def scenario_{number}({vehicles}: vehicle, L: lane) := F (s(SV) >= {place} * 1 m)"
     library = build_library([Source("mine.spec", text + initially)], bundled_library())
     settings = replace(default_settings(), library=library, sets=("base",), scenarios=(number,))
-    findings = evaluate.evaluate_recording(near_and_far(), ask(settings, 25))
+    findings = evaluate.evaluate_recording(near_and_far(), compile_questions(settings, 25))
     return {(m.sv, m.pov2, m.min_danger) for m in findings.matches if m.sv == 1}
 
 
@@ -129,7 +130,7 @@ def test_triples_end_with_the_last_danger(fault: Fault | None, monkeypatch: pyte
 
 # --- the pre-filters with the wrong vehicle's size or speed ----------------------------------------
 
-REACH = Reach(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0, a_max_lat=1.5, b_min_lat=1.5)
+REACH = RssParameters(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0, a_max_lat=1.5, b_min_lat=1.5)
 FILTER = faults("filter")
 
 
@@ -218,7 +219,7 @@ DETECTORS = {
 def detected(library_text: tuple[str, str] | None, gap: float, rear: float, front: float) -> set[str]:
     """The decel detectors that find SV behind POV, which brakes at 5 m/s², in a single sample."""
     library = bundled_library() if library_text is None else faulty_library(*library_text)
-    questions = ask(replace(default_settings(library), detectors=COMPARISON), 25)
+    questions = compile_questions(replace(default_settings(library), detectors=COMPARISON), 25)
     sv = [(0.0, -28.0, rear, 0.0, 0.0, 0.0)]
     pov = [(gap + 4.5, -28.0, front, 0.0, -5.0, 0.0)]
     recording = make_recording([Track(2, 1, sv), Track(2, 1, pov)])
@@ -254,10 +255,10 @@ def test_shares_are_of_situations_with_as_many_vehicles(
 ) -> None:
     """6 and 2 of 8 situations of two vehicles are 75 and 25 %, 4 of 4 of three vehicles are all."""
 
-    def one(number: int, vehicles: tuple[str, ...]) -> Example:
+    def one(number: int, vehicles: tuple[str, ...]) -> ClassExample:
         cell = Cell((number,), (number,), ())
         named = Class(f"class_{number}", vehicles, (number,), cell, None, "main road", f"{number} happens")
-        return Example(named, verdict=Verdict.WITNESSED)
+        return ClassExample(named, verdict=Verdict.WITNESSED)
 
     examples = [one(1, PAIR), one(4, PAIR), one(2, TRIPLE)]
     situations = Counter({"class_1": 6, "class_4": 2, "class_2": 4})

@@ -13,29 +13,30 @@ from extensions.traffic.drives import braking, building_up, cut_in, cut_out, mot
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.evaluate.questions import compile_questions, default_settings
 from roadproof.extensions.traffic.formats.highd import read_highd
-from roadproof.extensions.traffic.formats.neighbours import find_overlaps
+from roadproof.extensions.traffic.formats.overlaps import find_overlaps
 from roadproof.extensions.traffic.formats.recording import ZONES, Recording
 from roadproof.extensions.traffic.formats.write_highd import write_highd
 from roadproof.extensions.traffic.simulate import simulate as simulating
 from roadproof.extensions.traffic.simulate.planting import (
     PLANTED_COLUMNS,
-    Place,
     PlantedDrive,
+    PlantingPlace,
     lane_width,
     plant,
     plant_drives,
     plantable,
     rows_of,
 )
+from roadproof.extensions.traffic.simulate.ramp_road import road_of
 from roadproof.extensions.traffic.simulate.simulate import markings_of, simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic, road_of, zone_of
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings, zone_of
 from roadproof.library.loading import bundled_library
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road
 from roadproof.world.motion import state_at
-from roadproof.world.road import Lanelet, Road, pairs
+from roadproof.world.road import Lanelet, Road, adjacency
 
 ROAD = Road(
     "two lanes",
@@ -43,7 +44,7 @@ ROAD = Road(
         Lanelet(f"m{k}", f"main-{k}", "main", "main", (None, None), (F(7 * (k - 1), 2), F(7 * k, 2)))
         for k in (1, 2)
     ),
-    pairs([("main-1", "main-2")]),
+    adjacency([("main-1", "main-2")]),
 )
 
 
@@ -55,7 +56,7 @@ def drive_file(drive: Drive, scenario: int, lane: str = "main-1") -> DriveFile:
 
 @pytest.fixture(scope="module")
 def recording() -> Recording:
-    return simulate(Traffic(seconds=22, lane_width=3.5, lanes=2), seed=8)
+    return simulate(TrafficSettings(seconds=22, lane_width=3.5, lanes=2), seed=8)
 
 
 @pytest.mark.parametrize(("drive", "scenario"), [(cut_in(), 1), (braking(), 4), (cut_out(), 2)])
@@ -122,7 +123,7 @@ def test_roads_that_do_not_fit(recording: Recording) -> None:
     short = Lanelet("s", "main-3", "main", "main", (F(0), None), (F(7), F(21, 2)))
     merging = Lanelet("s", "merge-1", "merge", "main", (None, None), (F(7), F(21, 2)))
     for other in (short, merging):
-        road = Road("x", (other,), pairs([]))
+        road = Road("x", (other,), adjacency([]))
         assert "more than a straight main road" in plantable(replace(file, road=road))
 
 
@@ -131,13 +132,13 @@ def test_roads_that_do_not_fit(recording: Recording) -> None:
 
 @pytest.fixture(scope="module")
 def busy() -> Recording:
-    return simulate(Traffic(seconds=40), seed=21)
+    return simulate(TrafficSettings(seconds=40), seed=21)
 
 
-def place_in(recording: Recording, direction: int) -> Place:
+def place_in(recording: Recording, direction: int) -> PlantingPlace:
     """The drive's right lane is the rightmost lane of the direction."""
     right_edge = min(lane.d[0] for lane in recording.lanes if lane.direction == direction and lane.d)
-    return Place(direction, 200, Fraction(6), -410.0 if direction == 1 else 10.0, right_edge)
+    return PlantingPlace(direction, 200, Fraction(6), -410.0 if direction == 1 else 10.0, right_edge)
 
 
 @pytest.mark.parametrize("direction", [1, 2])
@@ -215,19 +216,19 @@ def found(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Findings, dict[int, PlantedDrive]]:
     """All drives one after the other in one recording that went through its files."""
-    recording = simulate(Traffic(seconds=70, flow=1000, lane_width=3.5), seed=12)
+    recording = simulate(TrafficSettings(seconds=70, flow=1000, lane_width=3.5), seed=12)
     right = min(x.d[0] for x in recording.lanes if x.direction == request.param and x.d)
     truths = {}
     for number in SCENARIOS:
         drive = load_drive(DRIVES / f"scenario-{number:02d}.json").drive
         rear = min(float(m.s - m.length) for m in drive.vehicles.values())
         begin = (-415.0 if request.param == 1 else 5.0) - rear
-        place = Place(request.param, 25 + 200 * (number - 1), Fraction(7), begin, right)
+        place = PlantingPlace(request.param, 25 + 200 * (number - 1), Fraction(7), begin, right)
         recording, truths[number] = plant(recording, drive, place)
     assert list(find_overlaps(recording)) == []
     folder = tmp_path_factory.mktemp("planted")
     write_highd(recording, folder)
-    return evaluate_recording(read_highd(folder, "01"), ask(default_settings(), 25)), truths
+    return evaluate_recording(read_highd(folder, "01"), compile_questions(default_settings(), 25)), truths
 
 
 @pytest.mark.parametrize("number", SCENARIOS)
@@ -252,7 +253,7 @@ def test_planted_scenario_is_found(
 
 @pytest.fixture(scope="module", params=[2, 3])
 def simulated(request: pytest.FixtureRequest) -> Recording:
-    return simulate(Traffic(seconds=120, lanes=request.param), seed=7)
+    return simulate(TrafficSettings(seconds=120, lanes=request.param), seed=7)
 
 
 def same(a: Recording, b: Recording) -> bool:
@@ -292,7 +293,7 @@ def test_no_overlaps(simulated: Recording) -> None:
 
 
 def test_same_seed_same_recording() -> None:
-    traffic = Traffic(seconds=20)
+    traffic = TrafficSettings(seconds=20)
     assert same(simulate(traffic, seed=3, number=2), simulate(traffic, seed=3, number=2))
     assert not np.array_equal(simulate(traffic, 3, 2).s, simulate(traffic, 3, 1).s)
     assert not np.array_equal(simulate(traffic, 3, 2).s, simulate(traffic, 4, 2).s)
@@ -313,7 +314,7 @@ def test_motion_is_consistent(simulated: Recording) -> None:
 
 
 def test_shape_of_highd() -> None:
-    r = simulate(Traffic(seconds=300), seed=1)
+    r = simulate(TrafficSettings(seconds=300), seed=1)
     assert 5500 < r.vehicles * 3600 / 300 < 8500  # 110,500 vehicles in 16.5 hours
     seconds = np.diff(r.start) / r.rate
     assert 12 < np.median(seconds) < 15.5
@@ -330,7 +331,7 @@ def test_shape_of_highd() -> None:
 
 def test_columns_of_neighbours(tmp_path: Path) -> None:
     """preceding and following ids, dhw and thw against a plain reading of one frame in ten."""
-    r = simulate(Traffic(seconds=20), seed=5)
+    r = simulate(TrafficSettings(seconds=20), seed=5)
     write_highd(r, tmp_path)
     lines = (tmp_path / "01_tracks.csv").read_text().splitlines()
     names = lines[0].split(",")
@@ -386,7 +387,7 @@ def same_way(a: dict[str, str], b: dict[str, str]) -> bool:
 )
 def test_wrong_settings_are_named(wrong: dict[str, float]) -> None:
     with pytest.raises(UsageError, match=next(iter(wrong))):
-        Traffic(**wrong)  # type: ignore[arg-type]
+        TrafficSettings(**wrong)  # type: ignore[arg-type]
 
 
 # --- Simulated recordings with an on-ramp or an off-ramp: who drives where, and what is read back ---
@@ -428,7 +429,7 @@ def test_nobody_is_on_a_ramp_where_there_is_none(made: tuple[str, Path]) -> None
     """The whole box of whoever is not on the main road is on the ramp, also at its end or beginning."""
     kind, folder = made
     recording = read_highd(folder, "01")
-    begin, end = zone_of(Traffic(ramp=kind))
+    begin, end = zone_of(TrafficSettings(ramp=kind))
     low = np.array([lane.d[0] for lane in recording.lanes if lane.d and lane.name == "main-1"])[0]
     ours = np.repeat(recording.direction == 2, np.diff(recording.start))
     width = recording.width[recording.row_vehicle]
@@ -445,7 +446,10 @@ def test_the_road_beside_it_is_that_of_the_models_moved(made: tuple[str, Path]) 
     ours, model = load_road(folder / "01_road.toml"), load_road(kind)
     assert {(x.zone, x.attribute) for x in ours.lanelets} == {(x.zone, x.attribute) for x in model.lanelets}
     assert len(ours.lanes) == len(model.lanes) + 1
-    assert ours.adjacent == road_of(Traffic(ramp=kind), markings_of(Traffic(ramp=kind))[1]).adjacent
+    assert (
+        ours.adjacent
+        == road_of(TrafficSettings(ramp=kind), markings_of(TrafficSettings(ramp=kind))[1]).adjacent
+    )
     ramp = next(x for x in ours.lanelets if x.attribute != "main")
     assert ramp.s == ((None, F(378)) if kind == "merge" else (F(42), None))
 
@@ -475,17 +479,23 @@ def test_the_same_seed_gives_the_same_files(made: tuple[str, Path], tmp_path: Pa
 def test_planted_fault_a_ramp_that_nobody_has_to_leave_is_noticed(monkeypatch, tmp_path: Path) -> None:
     """Without the end of the lane in sight, vehicles drive beyond it."""
     never = np.inf
-    monkeypatch.setattr(simulating.t, "room_ahead", lambda traffic, lane, s, changing: np.full(len(s), never))
-    monkeypatch.setattr(simulating.t, "wish", lambda traffic, lane, side, leaves: np.full(len(lane), -99.0))
+    monkeypatch.setattr(
+        simulating.traffic_settings, "room_ahead", lambda traffic, lane, s, changing: np.full(len(s), never)
+    )
+    monkeypatch.setattr(
+        simulating.traffic_settings,
+        "incentive",
+        lambda traffic, lane, side, leaves: np.full(len(lane), -99.0),
+    )
     rp.simulate(tmp_path, seconds=60, seed=3, ramp="merge", jobs=1)
     with pytest.raises(AssertionError):
         test_nobody_is_on_a_ramp_where_there_is_none(("merge", tmp_path))
 
 
 def test_drives_are_not_planted_beside_a_ramp(tmp_path: Path) -> None:
-    from extensions.exchange.exporting.kept import kept
+    from extensions.exchange.exporting.shipped_drives import shipped_drives
 
     with pytest.raises(rp.UsageError, match="ramp=merge: drives are planted on main roads only"):
-        rp.simulate(tmp_path, ramp="merge", plant=[kept()["scenario-04-base"]])
+        rp.simulate(tmp_path, ramp="merge", plant=[shipped_drives()["scenario-04-base"]])
     with pytest.raises(rp.UsageError, match="ramp='up': write 'none', 'merge', 'depart'"):
         rp.simulate(tmp_path, ramp="up")  # type: ignore[arg-type]

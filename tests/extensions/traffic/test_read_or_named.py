@@ -19,10 +19,18 @@ from roadproof.errors import InputError
 from roadproof.extensions.exchange import commonroad, osi
 from roadproof.extensions.maps import harmless, lanelet2, opendrive
 from roadproof.extensions.maps.opendrive import read_map
-from roadproof.extensions.traffic.formats import harmless_columns, highd, levelx, ngsim, samples
-from roadproof.extensions.traffic.formats.table import Table
-from roadproof.runtime.xml_element import parse
-from roadproof.world.unread import left_out_in, unread_columns
+from roadproof.extensions.maps.xml_element import parse
+from roadproof.extensions.traffic.formats import (
+    harmless_columns,
+    highd,
+    highd_columns,
+    levelx,
+    ngsim,
+    samples,
+)
+from roadproof.extensions.traffic.formats.content import columns_not_read_note
+from roadproof.extensions.traffic.formats.table import ColumnTable
+from roadproof.world.not_read import left_out_in
 
 LANE = (
     '<lane id="{}" type="driving" level="false"><link/><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>'
@@ -122,7 +130,7 @@ def test_a_reader_that_names_nothing_is_noticed(
 ) -> None:
     """The negative control: without the list of unread parts, some part is passed over without a word."""
     module = FORMATS[root_tag][3]
-    monkeypatch.setattr(module, "unread_parts" if module is commonroad else "unread", lambda *given: ())
+    monkeypatch.setattr(module, "parts_not_read", lambda *given: ())
     kind = "state" if root_tag == "commonRoad" else "lane"
     assert "" in {outcome(root_tag, *x, tmp_path, monkeypatch) for x in schema(root_tag).parts(kind)}
 
@@ -174,7 +182,7 @@ def test_unknown_attributes_and_elements_of_lanelet2_are_named(tag: str, tmp_pat
 def test_each_published_column_is_read_or_harmless() -> None:
     kinds = (highd._RECORDING_KINDS, highd._VEHICLE_KINDS, highd.SAMPLE_KINDS)
     compared = ("frontSightDistance", "backSightDistance")
-    columns = (*highd.RECORDING_COLUMNS, *highd.VEHICLE_COLUMNS, *highd.SAMPLE_COLUMNS)
+    columns = (*highd_columns.RECORDING_COLUMNS, *highd_columns.VEHICLE_COLUMNS, *highd.SAMPLE_COLUMNS)
     read = {x for kind in kinds for x in kind} | {*compared}
     assert {*columns} <= read | {*harmless_columns.HIGHD}
     assert not read & {*harmless_columns.HIGHD}
@@ -195,12 +203,12 @@ def test_an_unknown_column_of_exid_is_named_and_refused_where_reading_is_strict(
 ) -> None:
     for name, columns in PUBLISHED.items():
         (tmp_path / f"07_{name}.csv").write_text(f"{columns}\n", "utf-8")
-    assert levelx.unread_of(tmp_path, "07", strict=True) == ()
+    assert levelx.ignored_column_notes(tmp_path, "07", strict=True) == ()
     (tmp_path / f"07_{ending}.csv").write_text(f"{PUBLISHED[ending]},mood\n", "utf-8")
-    (told,) = levelx.unread_of(tmp_path, "07", strict=False)
+    (told,) = levelx.ignored_column_notes(tmp_path, "07", strict=False)
     assert told == f"left out of 07_{ending}.csv, as it is not supported: column mood"
     with pytest.raises(InputError, match="column mood"):
-        levelx.unread_of(tmp_path, "07", strict=True)
+        levelx.ignored_column_notes(tmp_path, "07", strict=True)
 
 
 def test_columns_of_ngsim_are_read_or_harmless(tmp_path: Path) -> None:
@@ -212,20 +220,20 @@ def test_columns_of_ngsim_are_read_or_harmless(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     for text in (columns, columns.lower()):
         path.write_text(f"{text}\n", "utf-8")
-        assert unread_columns(path, *ngsim._names(path), strict=True) == ()
+        assert columns_not_read_note(path, *ngsim._names(path), strict=True) == ()
     path.write_text(f"{columns},mood\n", "utf-8")
     with pytest.raises(InputError, match="column mood"):
-        unread_columns(path, *ngsim._names(path), strict=True)
+        columns_not_read_note(path, *ngsim._names(path), strict=True)
 
 
 def test_a_column_of_jerk_is_named_in_own_tables() -> None:
     columns = dict.fromkeys((*samples.HEADER, "kind", "gear"), np.zeros(1))
-    assert samples.unread_of(Table(Path("a.csv"), columns, 1), strict=True) == ()
-    jerky = Table(Path("a.csv"), {**columns, "j_lon": np.zeros(1)}, 1)
-    (told,) = samples.unread_of(jerky, strict=False)
+    assert samples.ignored_column_notes(ColumnTable(Path("a.csv"), columns, 1), strict=True) == ()
+    jerky = ColumnTable(Path("a.csv"), {**columns, "j_lon": np.zeros(1)}, 1)
+    (told,) = samples.ignored_column_notes(jerky, strict=False)
     assert told == "left out of a.csv, as it is not supported: column j_lon"
     with pytest.raises(InputError, match="column j_lon"):
-        samples.unread_of(jerky, strict=True)
+        samples.ignored_column_notes(jerky, strict=True)
 
 
 # --- OSI -----------------------------------------------------------------------------------------
@@ -235,7 +243,7 @@ def test_a_column_of_jerk_is_named_in_own_tables() -> None:
 @pytest.mark.parametrize("field", range(1, 30))
 def test_each_field_of_osi_is_read_harmless_or_named(message: str, field: int) -> None:
     samples = osi._Samples()
-    samples.look(message, number(field, 1))
+    samples.note_unread_fields(message, number(field, 1))
     known = field in osi._READ[message] or field in osi._HARMLESS[message]
     assert bool(samples.unread) != known
     assert all(x.startswith(f"{message}.") for x in samples.unread)

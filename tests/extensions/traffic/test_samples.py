@@ -16,7 +16,7 @@ from extensions.traffic.sampled import TWO, csv_of, lower_road, toml_of, write_s
 from roadproof.errors import InputError
 from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.extensions.traffic.evaluate.one_trace import read_pair, read_samples
-from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.evaluate.questions import compile_questions, default_settings
 from roadproof.extensions.traffic.formats.converted import same_recording
 from roadproof.extensions.traffic.formats.highd import read_highd
 from roadproof.extensions.traffic.formats.recording import Recording, keep_vehicles, kind_called, own_numbers
@@ -24,9 +24,9 @@ from roadproof.extensions.traffic.formats.samples import HEADER, clock_of, read_
 from roadproof.extensions.traffic.formats.sources import find_source, find_sources
 from roadproof.extensions.traffic.formats.straight import of_road, place
 from roadproof.extensions.traffic.formats.write_highd import write_highd
-from roadproof.extensions.traffic.simulate.planting import Place, plant
+from roadproof.extensions.traffic.simulate.planting import PlantingPlace, plant
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 from roadproof.library.bind import occupies
 from roadproof.logic.rewrite import with_values
 from roadproof.semantics.sampled.batch import Batch
@@ -100,13 +100,13 @@ def test_places_are_those_of_the_formulas(name: str) -> None:
 @pytest.fixture(scope="module")
 def traffic() -> Recording:
     """With a planted cut-in on the lower lanes."""
-    recording = simulate(Traffic(seconds=30, lane_width=3.5), seed=4)
+    recording = simulate(TrafficSettings(seconds=30, lane_width=3.5), seed=4)
     right = min(lane.d[0] for lane in recording.lanes if lane.direction == 2 and lane.d)
-    return plant(recording, cut_in(), Place(2, 20, 6, 10.0, right))[0]
+    return plant(recording, cut_in(), PlantingPlace(2, 20, 6, 10.0, right))[0]
 
 
 def found(recording: Recording) -> Findings:
-    return evaluate_recording(recording, ask(default_settings(), recording.rate))
+    return evaluate_recording(recording, compile_questions(default_settings(), recording.rate))
 
 
 def test_csv_parquet_and_highd_tell_the_same(traffic: Recording, tmp_path: Path) -> None:
@@ -339,7 +339,7 @@ def test_one_format_a_folder(tmp_path: Path) -> None:
         find_sources(tmp_path)
 
 
-# --- Own signals and kinds in CSV, Parquet and frames: what is read, and what is refused ------------
+# --- Custom signals and kinds in CSV, Parquet and frames: what is read, and what is refused ------------
 
 SPEC = """
 signal red: bool
@@ -432,17 +432,17 @@ def test_a_missing_column_names_the_signal_the_file_and_what_there_is(tmp_path: 
     path = written(tmp_path, own_table().drop("jerk"), "csv")
     with pytest.raises(InputError) as raised:
         rp.monitor("swift(SV)", path, HOME)
-    for part in (str(path), "no column jerk", "signal jerk", "of own signals there are red"):
+    for part in (str(path), "no column jerk", "signal jerk", "of custom signals there are red"):
         assert part in str(raised.value)
 
 
 def test_a_recording_has_own_signals_by_sample_and_kinds_by_vehicle(tmp_path: Path) -> None:
     recording = read_recording(written(tmp_path, own_table(), "csv"))
-    assert recording.own["red"].tolist() == [float(k >= 4) for k in range(11)] * 2
+    assert recording.custom_signals["red"].tolist() == [float(k >= 4) for k in range(11)] * 2
     assert [KINDS[code - 1] for code in recording.kind_code] == ["car", "truck"]
     kept = keep_vehicles(recording, recording.kind == "Car")
     assert isinstance(kept, Recording)
-    assert kept.own["red"].tolist() == recording.own["red"].tolist()[:11]
+    assert kept.custom_signals["red"].tolist() == recording.custom_signals["red"].tolist()[:11]
     assert (
         rp.monitor("kind(SV) = truck and F[0, 1] swift(SV)", f"{tmp_path}/a.csv:2,1", HOME).verdict == "true"
     )

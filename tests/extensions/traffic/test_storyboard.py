@@ -28,7 +28,7 @@ from extensions.traffic.board import (
 )
 from roadproof.errors import InputError
 from roadproof.extensions.exchange.openscenario import read_recording, read_scenario
-from roadproof.extensions.exchange.storyboard.expressions import expression_value, replaced
+from roadproof.extensions.exchange.storyboard.expressions import expression_value, replace_parameters
 
 # --- three motions by hand --------------------------------------------------------------------------
 
@@ -382,7 +382,7 @@ def test_positions_on_roads_that_follow_each_other(tmp_path: Path) -> None:
 )
 def test_expressions(text: str, value: float) -> None:
     assert expression_value(text) == value
-    assert float(replaced(f"${{$a * ({text})}}", {"a": "2"})) == 2 * value
+    assert float(replace_parameters(f"${{$a * ({text})}}", {"a": "2"})) == 2 * value
 
 
 @pytest.mark.parametrize(

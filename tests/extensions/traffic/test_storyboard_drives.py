@@ -24,7 +24,7 @@ from extensions.traffic.board import (
 )
 from roadproof.errors import InputError
 from roadproof.extensions.exchange.storyboard.drives import StoryboardDrive, read_storyboard_drive
-from roadproof.extensions.exchange.storyboard.stage import open_stage, played
+from roadproof.extensions.exchange.storyboard.stage import open_stage, run_stage
 from roadproof.extensions.traffic.evaluate.one_trace import OneTrace
 from roadproof.world.drive import Piece
 from roadproof.world.motion import states_at
@@ -81,7 +81,7 @@ def test_other_shapes_are_close(action: str, tmp_path: Path) -> None:
     """At 997 instants, none of them a knot, against the storyboard's own motion."""
     path = put(tmp_path, {"Ego": EGO}, maneuver("Ego", event("go", action, when(at_time(1)))), stop=END)
     found = read_storyboard_drive(path)
-    _, play = played(open_stage(path))
+    _, play = run_stage(open_stage(path))
     times = [Fraction(12 * k, 997) for k in range(1, 997)]
     for time, state in zip(times, states_at(found.drive.vehicles["Ego"], times), strict=True):
         there = play.state_at("Ego", float(time))
@@ -131,7 +131,7 @@ def storyboard(folder: Path, seed: int) -> Path:
 
 def refined(path: Path, found: StoryboardDrive) -> OneTrace:
     """The storyboard's own motion, 100 samples a second."""
-    _, play = played(open_stage(path))
+    _, play = run_stage(open_stage(path))
     columns: dict[str, list[object]] = {}
     for tick, states in enumerate(play.states):
         for name, state in states.items():

@@ -30,7 +30,7 @@ from roadproof.errors import InputError
 from roadproof.extensions.exchange.openscenario import read_recording, read_scenario
 from roadproof.extensions.exchange.storyboard.distances import Measure, distance_between
 from roadproof.extensions.exchange.storyboard.drives import read_storyboard_drive
-from roadproof.extensions.exchange.storyboard.positions import State, positions_on
+from roadproof.extensions.exchange.storyboard.positions import ObjectState, positions_on
 from roadproof.extensions.exchange.storyboard.stage import open_stage
 
 OTHER = init("Other", lane(-1, 140), 16)
@@ -211,7 +211,7 @@ def test_distances_on_a_bend_follow_their_coordinate_system(free: bool, tmp_path
     """60 m ahead on a left bend of radius 400 m: 60 m along the road, less along the vehicle."""
     stage = open_stage(write(tmp_path, BOTH, (), "bend"))
     positions = positions_on(stage.document, stage.road)
-    one, other = State(100, -6, 20, 0, 0, 0), State(160, -6, 20, 0, 0, 0)
+    one, other = ObjectState(100, -6, 20, 0, 0, 0), ObjectState(160, -6, 20, 0, 0, 0)
     turn, radius, length = 60 / 400, 406.0, 5.0
     ahead = radius * math.sin(turn)
     for system, expected in (("road", 60.0), ("lane", 60.0), ("entity", ahead)):

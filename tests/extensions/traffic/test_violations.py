@@ -13,14 +13,19 @@ import pytest
 
 from extensions.traffic.drives import braking, cut_in
 from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
-from roadproof.extensions.traffic.evaluate.totals import Counts, add_findings, begin_totals, without_repeats
+from roadproof.extensions.traffic.evaluate.questions import compile_questions, default_settings
+from roadproof.extensions.traffic.evaluate.totals import (
+    ShownMoments,
+    add_findings,
+    begin_totals,
+    without_repeats,
+)
 from roadproof.extensions.traffic.evaluate.violations import ViolatingPairs
 from roadproof.extensions.traffic.formats.recording import OF_SAMPLES, Recording, keep_vehicles, offsets
 from roadproof.extensions.traffic.formats.repeats import FramePair, moments_of
-from roadproof.extensions.traffic.simulate.planting import Place, plant
+from roadproof.extensions.traffic.simulate.planting import PlantingPlace, plant
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 
 LABEL = (0, "ext", "", "match")
 LENGTH, SPAN = 60, 20
@@ -152,15 +157,15 @@ def test_a_pair_and_its_match_count_once_in_windows_that_overlap(seed: int) -> N
     Accelerations have noise, so that each vehicle is known again by its motion.
     """
     dice, random = Random(seed), np.random.default_rng(seed)
-    whole = simulate(Traffic(seconds=16, lane_width=3.5, section=300), seed=seed)
+    whole = simulate(TrafficSettings(seconds=16, lane_width=3.5, section=300), seed=seed)
     for drive, frame in ((cut_in(), 60), (braking(), 200)):
-        whole, _ = plant(whole, drive, Place(2, frame, 6, 10.0, -34.0))
+        whole, _ = plant(whole, drive, PlantingPlace(2, frame, 6, 10.0, -34.0))
     whole = replace(whole, a_lon=whole.a_lon + random.normal(0, 0.01, len(whole.a_lon)))
     settings = replace(default_settings(), sets=("ext",), scenarios=(1, 3, 4), min_danger=(Fraction(0),))
-    questions = ask(settings, whole.rate)
+    questions = compile_questions(settings, whole.rate)
     windows = [cut(whole, k, 100 * k, 100 * k + 200, dice) for k in range(4)]
     dice.shuffle(windows)
-    totals, counted = begin_totals(settings), Counts()
+    totals, counted = begin_totals(settings), ShownMoments()
     violating, matching = set(), set()
     single = 0
     for window, names in windows:

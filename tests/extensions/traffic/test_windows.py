@@ -26,33 +26,33 @@ from extensions.traffic.lies import (
 from roadproof.errors import InputError
 from roadproof.extensions.traffic.evaluate import evaluate as evaluating
 from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording, evaluate_windows
-from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.evaluate.questions import compile_questions, default_settings
 from roadproof.extensions.traffic.formats import large, plausible, table, windows
 from roadproof.extensions.traffic.formats.converted import same_recording
 from roadproof.extensions.traffic.formats.highd import read_highd
-from roadproof.extensions.traffic.formats.plausible import check
+from roadproof.extensions.traffic.formats.plausible import contradiction_checks
 from roadproof.extensions.traffic.formats.recording import Recording, keep_vehicles
 from roadproof.extensions.traffic.formats.samples import HEADER
 from roadproof.extensions.traffic.formats.sources import find_source, find_sources
-from roadproof.extensions.traffic.formats.windows import Window, divide
+from roadproof.extensions.traffic.formats.windows import TimeWindow, divide
 from roadproof.extensions.traffic.formats.write_highd import write_highd
-from roadproof.extensions.traffic.simulate.planting import Place, plant
+from roadproof.extensions.traffic.simulate.planting import PlantingPlace, plant
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 from roadproof.frontends.cli.main import main
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.package_data import shipped_folder
 
 FILES = ("matches.csv", "pairs.csv", "results.json", "results.txt", "comparison.txt", "answers.md")
 
 
 @pytest.fixture(scope="module")
 def traffic() -> Recording:
-    return simulate(Traffic(seconds=60), seed=6)
+    return simulate(TrafficSettings(seconds=60), seed=6)
 
 
-def cut(recording: Recording, samples: int) -> list[Window]:
+def cut(recording: Recording, samples: int) -> list[TimeWindow]:
     return [
-        Window(keep_vehicles(recording, there), new[there])
+        TimeWindow(keep_vehicles(recording, there), new[there])
         for there, new in divide(recording.first_frame, recording.last_frame, samples)
     ]
 
@@ -79,7 +79,7 @@ def test_vehicles_that_share_a_frame_share_a_window(tracks: list[tuple[int, int]
 
 @pytest.mark.parametrize("samples", [1, 6_000, 12_000])
 def test_findings_are_the_same(traffic: Recording, samples: int) -> None:
-    questions = ask(default_settings(), 25, traffic.zone_names)
+    questions = compile_questions(default_settings(), 25, traffic.zone_names)
     whole = evaluate_recording(traffic, questions)
     made = cut(traffic, samples)
     assert len(made) > 3
@@ -92,13 +92,13 @@ def test_windows_that_forget_or_repeat_are_caught(
     traffic: Recording, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Planted faults: what is in two windows counted twice, and what is new with what is not left out."""
-    questions = ask(default_settings(), 25, traffic.zone_names)
+    questions = compile_questions(default_settings(), 25, traffic.zone_names)
     whole, made = evaluate_recording(traffic, questions), cut(traffic, 15_000)
     for fault in (
         lambda self, *vehicles: np.ones(len(vehicles[0]), bool),
         lambda self, *vehicles: np.logical_and.reduce([self.new[index] for index in vehicles]),
     ):
-        monkeypatch.setattr(Window, "has", fault)
+        monkeypatch.setattr(TimeWindow, "has", fault)
         assert evaluate_windows(made, questions) != whole
     monkeypatch.undo()
     monkeypatch.setitem(evaluating._ORDERS, "matches", lambda match: (match.lane,))
@@ -161,13 +161,13 @@ def frame_of(recording: Recording) -> pl.DataFrame:
 
 @pytest.fixture(scope="module")
 def frame() -> pl.DataFrame:
-    return frame_of(simulate(Traffic(seconds=40, lanes=2, lane_width=3.5), 6))
+    return frame_of(simulate(TrafficSettings(seconds=40, lanes=2, lane_width=3.5), 6))
 
 
 def put(frame: pl.DataFrame, folder: Path, ending: str) -> Path:
     folder.mkdir(exist_ok=True)
     path = folder / f"a.{ending}"
-    shutil.copy(shipped("models") / "roads" / "main-2.toml", folder / "a_road.toml")
+    shutil.copy(shipped_folder("models") / "roads" / "main-2.toml", folder / "a_road.toml")
     if ending == "csv":
         frame.write_csv(path)
     else:
@@ -232,7 +232,7 @@ def test_findings_of_a_large_file(
 ) -> None:
     path = put(frame, tmp_path, "parquet")
     recording = find_source(path).read()
-    questions = ask(default_settings(), 25, recording.zone_names)
+    questions = compile_questions(default_settings(), 25, recording.zone_names)
     monkeypatch.setattr(windows, "MOST_SAMPLES", 1_500)
     assert evaluate_windows(find_source(path).divided().windows(), questions) == evaluate_recording(
         recording, questions
@@ -365,9 +365,9 @@ def test_the_command_says_how_many(
 @pytest.fixture(scope="module")
 def honest(tmp_path_factory: pytest.TempPathFactory) -> Files:
     """Both directions, trucks, lane changes, and a planted drive."""
-    recording = simulate(Traffic(seconds=40, lane_width=3.5), seed=4)
+    recording = simulate(TrafficSettings(seconds=40, lane_width=3.5), seed=4)
     right = min(lane.d[0] for lane in recording.lanes if lane.direction == 2 and lane.d)
-    recording, _ = plant(recording, cut_in(), Place(2, 20, 6, 10.0, right))
+    recording, _ = plant(recording, cut_in(), PlantingPlace(2, 20, 6, 10.0, right))
     folder = tmp_path_factory.mktemp("honest")
     write_highd(recording, folder)
     return read_columns(folder)
@@ -376,7 +376,7 @@ def honest(tmp_path_factory: pytest.TempPathFactory) -> Files:
 def test_the_honest_recording_has_no_note(honest: Files, tmp_path: Path) -> None:
     recording = read_highd(write_columns(honest, tmp_path), "01")
     assert recording.notes == ()
-    assert evaluate_recording(recording, ask(default_settings(), 25)).notes == ()
+    assert evaluate_recording(recording, compile_questions(default_settings(), 25)).notes == ()
 
 
 @pytest.mark.parametrize("name", REFUSED)
@@ -413,27 +413,27 @@ def test_a_vehicle_that_stands_there_twice_is_noted(honest: Files, tmp_path: Pat
     files = copy.deepcopy(honest)
     one_vehicle_twice(files)
     recording = read_highd(write_columns(files, tmp_path), "01")
-    notes = evaluate_recording(recording, ask(default_settings(), 25)).notes
+    notes = evaluate_recording(recording, compile_questions(default_settings(), 25)).notes
     assert any("overlap in" in note for note in notes), notes
 
 
 @pytest.mark.parametrize(
     "traffic",
     [
-        Traffic(seconds=30),
-        Traffic(seconds=30, lanes=2),
-        Traffic(seconds=30, lanes=4, flow=6000),
-        Traffic(seconds=30, lane_width=3.0, truck_share=0.4),
-        Traffic(seconds=30, lane_width=5.0, truck_share=0.0),
-        Traffic(seconds=60, flow=200),
-        Traffic(seconds=30, section=100.0),
-        Traffic(seconds=20, section=2000.0),
-        Traffic(seconds=30, rate=10),
+        TrafficSettings(seconds=30),
+        TrafficSettings(seconds=30, lanes=2),
+        TrafficSettings(seconds=30, lanes=4, flow=6000),
+        TrafficSettings(seconds=30, lane_width=3.0, truck_share=0.4),
+        TrafficSettings(seconds=30, lane_width=5.0, truck_share=0.0),
+        TrafficSettings(seconds=60, flow=200),
+        TrafficSettings(seconds=30, section=100.0),
+        TrafficSettings(seconds=20, section=2000.0),
+        TrafficSettings(seconds=30, rate=10),
     ],
     ids=str,
 )
 @pytest.mark.parametrize("seed", [1, 2])
-def test_simulated_traffic_contradicts_nothing(traffic: Traffic, seed: int, tmp_path: Path) -> None:
+def test_simulated_traffic_contradicts_nothing(traffic: TrafficSettings, seed: int, tmp_path: Path) -> None:
     write_highd(simulate(traffic, seed), tmp_path)
     assert read_highd(tmp_path, "01").notes == ()
 
@@ -442,10 +442,10 @@ def test_simulated_traffic_contradicts_nothing(traffic: Traffic, seed: int, tmp_
 def test_measured_traffic_contradicts_nothing(seed: int) -> None:
     """With the noise of a good measurement: 3 cm in places, 6 cm/s in speeds, 0.3 m/s² in accelerations."""
     random = np.random.default_rng(seed)
-    recording = simulate(Traffic(seconds=40), seed)
+    recording = simulate(TrafficSettings(seconds=40), seed)
     count = len(recording.s)
     slow = np.sin(np.arange(count) / random.uniform(8, 20) + random.uniform(0, 6))
     for name, noise in (("s", 0.02), ("d", 0.02), ("v_lon", 0.05), ("v_lat", 0.03)):
         getattr(recording, name)[:] += noise * slow + random.uniform(-0.01, 0.01, count)
     recording.a_lon[:] += 0.1 * slow + random.uniform(-0.2, 0.2, count)
-    assert check(recording).doubts() == []
+    assert contradiction_checks(recording).contradictions() == []

@@ -2,7 +2,11 @@
 
 from pathlib import Path
 
-from roadproof.extensions.traffic.formats.highd import RECORDING_COLUMNS, SAMPLE_COLUMNS, VEHICLE_COLUMNS
+from roadproof.extensions.traffic.formats.highd_columns import (
+    RECORDING_COLUMNS,
+    SAMPLE_COLUMNS,
+    VEHICLE_COLUMNS,
+)
 
 Files = dict[str, list[list[str]]]
 """Rows of cells by file name, header first."""

@@ -3,7 +3,7 @@
 import argparse
 
 from roadproof.extensions.surveys.settings import Ask
-from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.basis import deliver, read_definitions, study_keywords
 
 SUMMARY = "which scenarios can hold while no other one does: a drive for each, or a proof"
 
@@ -19,4 +19,4 @@ def run(args: argparse.Namespace) -> int:
     from roadproof_example.question import Alone
 
     home = read_definitions(args, OPTIONS)
-    return hand_over(args, ask(Alone, args.among, home, **study_keywords(args, OPTIONS)))
+    return deliver(args, ask(Alone, args.among, home, **study_keywords(args, OPTIONS)))

@@ -1,4 +1,4 @@
-"""Formulas over sampled time as linear and polynomial constraints, for a search.
+"""Encoders: a formula over sampled time becomes linear and polynomial constraints for a solver.
 
-Imports no solver. Time becomes steps in ``unroll`` only.
+Imports no solver. Only ``unroll`` turns time into steps.
 """

@@ -1,4 +1,4 @@
-"""A question to a problem: formula, road, vehicles and grid become columns, rows and a circuit."""
+"""The encoder: formula, road, vehicles and grid become columns, rows and a circuit of inequalities."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -7,26 +7,28 @@ from itertools import combinations
 from typing import TypeAlias, assert_never
 
 from roadproof.engines.encode.inequalities import Quantity, inequalities_of, sizes_of
-from roadproof.engines.encode.motion import Layout, encode_motions
-from roadproof.engines.encode.place import be_in_lane, move_one_way, span, stay_apart, stay_on_road
+from roadproof.engines.encode.motion import ColumnLayout, encode_motions
+from roadproof.engines.encode.place import be_in_lane, move_one_way, road_edges, stay_apart, stay_on_road
 from roadproof.engines.encode.problem import (
     Circuit,
-    Column,
     ColumnInequality,
     Inequality,
     Leaf,
+    LimitKind,
+    Origin,
     Problem,
+    RealColumn,
     Row,
     all_of,
     replace_leaves,
     row_of,
 )
-from roadproof.engines.encode.unroll import At, unroll
+from roadproof.engines.encode.unroll import TimedAtom, unroll
 from roadproof.logic.formula import Compare, Formula
 from roadproof.runtime.records import dataclass
 from roadproof.world.polynomial import Polynomial, affine, variable
 from roadproof.world.road import Road
-from roadproof.world.signals import OwnName
+from roadproof.world.signals import CustomSignalName
 from roadproof.world.vehicle import Range, Vehicle
 
 # Stands for the time since the last sample while inequalities are made to last; columns count from 0.
@@ -35,24 +37,24 @@ _LATER = -1
 
 # What is kept from an inequality that is not strict, and from one that is.
 Margin: TypeAlias = tuple[Fraction, Fraction]
-NONE: Margin = (Fraction(0), Fraction(0))
-NARROW: Margin = (Fraction(0), Fraction(1, 100))
+NO_MARGIN: Margin = (Fraction(0), Fraction(0))
+SMALL_MARGIN: Margin = (Fraction(0), Fraction(1, 100))
 
 
 @dataclass(frozen=True)
 class Assumptions:
-    """What is asked of a drive beside the formula; all of it is printed with a NONE-WITHIN.
+    """Restrictions of a search beside the formula; a NONE-WITHIN verdict prints all that apply.
 
-    ``natural``: start and end in a lane, straight on, at cruising
-    speed; move across the road in one direction only, within the vehicles' jumps of acceleration.
-    ``between``: whether to look after the time between samples too.
-    ``apart``: how far boxes stay from each other, along or across.
-    ``reach``: how far apart any two vehicles may start, in m.
-    ``starts``: where fronts may be at time 0; None puts the first vehicle's at s = 0 (``encode.along``).
+    ``natural``: drives start and end in a lane, straight on and at cruising speed, move across the road in
+    one direction only, and keep the vehicles' limits on jumps of acceleration.
+    ``reach``: largest distance between two starts (m).
     ``collisions``: whether boxes may overlap. ``straight``: vehicles that do not move across the road.
-    ``margin`` and ``inside``: what a search in floating
-    point keeps from the inequalities of the formula and from the limits of the accelerations.
-    ``lasting``: what is asked of the last sample is asked for ever after, of formula and road alike.
+    ``margin`` and ``inside``: safety margins of a floating-point search on the inequalities of the formula
+    and on the limits of the accelerations.
+    ``between``: whether road and clearance also hold between samples. ``apart``: clearance of boxes along
+    and across (m). ``starts``: range of the fronts at time 0; None puts the first vehicle's front at s = 0
+    (``encode.shift_invariance``).
+    ``last_sample_persists``: whether conditions at the last sample hold for all later time as well.
     """
 
     natural: bool = True
@@ -65,42 +67,42 @@ class Assumptions:
     between: bool = True
     apart: tuple[Fraction, Fraction] = (Fraction(8), Fraction(7, 10))
     starts: Range | None = None
-    lasting: bool = True
+    last_sample_persists: bool = True
 
-    def plain(self) -> "Assumptions":
-        """Whatever the limits of the vehicles allow."""
+    def without_comfort(self) -> "Assumptions":
+        """Return assumptions without the restrictions to natural driving; vehicle limits remain."""
         close = Fraction(1, 20)
-        return replace(self, natural=False, straight=frozenset(), margin=NARROW, apart=(close, close))
+        return replace(self, natural=False, straight=frozenset(), margin=SMALL_MARGIN, apart=(close, close))
 
-    def loosest(self) -> "Assumptions":
-        """No more than every drive keeps that a NONE-WITHIN speaks of: what it rests on is printed."""
+    def relaxed(self) -> "Assumptions":
+        """Return the weakest assumptions: every drive that a NONE-WITHIN excludes satisfies them."""
         return replace(
-            self.plain(),
-            margin=NONE,
+            self.without_comfort(),
+            margin=NO_MARGIN,
             inside=Fraction(0),
             apart=(Fraction(0), Fraction(0)),
             between=False,
-            lasting=False,
+            last_sample_persists=False,
         )
 
 
-def frame(
-    wanted: Circuit[ColumnInequality],
+def assemble_problem(
+    formula_circuit: Circuit[ColumnInequality],
     road: Road,
     vehicles: Mapping[str, Vehicle],
-    layout: Layout,
+    layout: ColumnLayout,
     assumptions: Assumptions,
 ) -> Problem:
-    """An encoded formula put among motions, road and assumptions."""
+    """Combine an encoded formula with the constraints from motion, road and assumptions."""
     columns, rows = _motions(road, vehicles, layout, assumptions)
-    around = surroundings(road, vehicles, layout, assumptions)
-    return Problem(columns, (*rows, *_starts_within(layout, assumptions)), all_of([wanted, *around]))
+    around = road_constraints(road, vehicles, layout, assumptions)
+    return Problem(columns, (*rows, *_reach_rows(layout, assumptions)), all_of([formula_circuit, *around]))
 
 
 def _motions(
-    road: Road, vehicles: Mapping[str, Vehicle], layout: Layout, assumptions: Assumptions
-) -> tuple[tuple[Column, ...], tuple[Row, ...]]:
-    right, left = span(road)
+    road: Road, vehicles: Mapping[str, Vehicle], layout: ColumnLayout, assumptions: Assumptions
+) -> tuple[tuple[RealColumn, ...], tuple[Row, ...]]:
+    right, left = road_edges(road)
     starts: dict[str, Range] = dict.fromkeys(
         vehicles, assumptions.starts or (-assumptions.reach, assumptions.reach)
     )
@@ -112,29 +114,31 @@ def _motions(
 
 
 def encode_formula(
-    formula: Formula, vehicles: Mapping[str, Vehicle], layout: Layout, assumptions: Assumptions
+    formula: Formula, vehicles: Mapping[str, Vehicle], layout: ColumnLayout, assumptions: Assumptions
 ) -> Circuit[ColumnInequality]:
-    """The formula as a circuit over the columns of ``layout``.
+    """Return the formula as a circuit over the columns of ``layout``.
 
     Raises ``UsageError`` for interval bounds that are no multiples of dt.
     """
-    return ground(unroll(formula, layout.grid), vehicles, layout, assumptions.margin, assumptions.lasting)
+    return ground_atoms(
+        unroll(formula, layout.grid), vehicles, layout, assumptions.margin, assumptions.last_sample_persists
+    )
 
 
-def _starts_within(layout: Layout, assumptions: Assumptions) -> Iterator[Row]:
-    """No two vehicles start farther apart than the reach, where the bounds of columns do not say so."""
-    held = layout.vehicles[1:] if assumptions.starts is None else layout.vehicles
-    for a, b in combinations(held, 2):
+def _reach_rows(layout: ColumnLayout, assumptions: Assumptions) -> Iterator[Row]:
+    """Yield rows that bound the distance of any two starts by the reach, where column bounds do not."""
+    free_vehicles = layout.vehicles[1:] if assumptions.starts is None else layout.vehicles
+    for a, b in combinations(free_vehicles, 2):
         ends = [(layout.column(a, "s", 0), Fraction(1)), (layout.column(b, "s", 0), Fraction(-1))]
-        yield row_of(affine(ends), -assumptions.reach, assumptions.reach)
+        yield row_of(affine(ends), -assumptions.reach, assumptions.reach, Origin(LimitKind.REACH, 0, (a, b)))
 
 
-def surroundings(
-    road: Road, vehicles: Mapping[str, Vehicle], layout: Layout, assumptions: Assumptions
+def road_constraints(
+    road: Road, vehicles: Mapping[str, Vehicle], layout: ColumnLayout, assumptions: Assumptions
 ) -> list[Circuit[ColumnInequality]]:
-    """Conditions on where vehicles are that do not come from the formula."""
+    """Return the constraints on places that do not come from the formula: road, clearance, lanes."""
     parts = [
-        stay_on_road(layout, road, name, vehicle, assumptions.between, assumptions.lasting)
+        stay_on_road(layout, road, name, vehicle, assumptions.between, assumptions.last_sample_persists)
         for name, vehicle in vehicles.items()
     ]
     if not assumptions.collisions:
@@ -152,56 +156,67 @@ def surroundings(
     return parts
 
 
-def ground(
-    circuit: Circuit[At],
+def ground_atoms(
+    circuit: Circuit[TimedAtom],
     vehicles: Mapping[str, Vehicle],
-    layout: Layout,
+    layout: ColumnLayout,
     margin: Margin,
-    lasting: bool = True,
+    last_sample_persists: bool = True,
 ) -> Circuit[ColumnInequality]:
-    """A circuit of comparisons at samples as one of inequalities about columns.
+    """Replace comparisons at samples by inequalities over columns.
 
-    Where ``lasting``, one at the last sample is asked for from there on for ever.
+    Args:
+        circuit: comparisons at samples, from ``unroll``.
+        margin: safety margins for non-strict and for strict inequalities.
+        last_sample_persists: whether a comparison at the last sample must hold for all later time, too.
     """
     sizes = sizes_of(vehicles)
     known: dict[Compare, Circuit[Inequality[Quantity]]] = {}
 
-    def at(leaf: At) -> Circuit[ColumnInequality]:
+    def at(leaf: TimedAtom) -> Circuit[ColumnInequality]:
+        """Return the inequalities of one comparison; equal comparisons are expanded once."""
+        origin = Origin(leaf.atom, leaf.step)
         if leaf.atom not in known:
             known[leaf.atom] = replace_leaves(
                 inequalities_of(leaf.atom, sizes),
                 lambda inequality: Leaf(replace(inequality, margin=margin[inequality.strict])),
             )
-        if leaf.step < layout.grid.steps or not lasting:
+        if leaf.step < layout.grid.steps or not last_sample_persists:
             return replace_leaves(
-                known[leaf.atom], lambda inequality: Leaf(inequality_at(inequality, layout, leaf.step))
+                known[leaf.atom], lambda inequality: Leaf(inequality_at(inequality, layout, origin))
             )
-        return replace_leaves(known[leaf.atom], lambda inequality: inequality_for_ever(inequality, layout))
+        return replace_leaves(
+            known[leaf.atom], lambda inequality: inequality_from_last_sample(inequality, layout, origin)
+        )
 
     return replace_leaves(circuit, at)
 
 
-def inequality_at(inequality: Inequality[Quantity], layout: Layout, step: int) -> ColumnInequality:
-    """An inequality about signals as one about the columns of a sample."""
+def inequality_at(inequality: Inequality[Quantity], layout: ColumnLayout, origin: Origin) -> ColumnInequality:
+    """Return an inequality over signals as an inequality over the columns of the step of ``origin``."""
     return Inequality(
-        inequality.polynomial.substitute(lambda q: layout.state(q[0], q[1], step)),
+        inequality.polynomial.substitute(lambda q: layout.state(q[0], q[1], origin.step)),
         inequality.strict,
         inequality.margin,
+        origin,
     )
 
 
-def inequality_for_ever(inequality: Inequality[Quantity], layout: Layout) -> Circuit[ColumnInequality]:
-    """Sufficient for an inequality to hold at the last sample and ever after, when nobody accelerates.
+def inequality_from_last_sample(
+    inequality: Inequality[Quantity], layout: ColumnLayout, origin: Origin
+) -> Circuit[ColumnInequality]:
+    """Return a sufficient condition for an inequality to hold from the last sample on, without acceleration.
 
-    Positions are then affine in the time since, so the polynomial is one in that time; it stays
-    where it should if it is there at once and no coefficient of a positive power is negative.
+    Positions are then affine in the time since that sample, so the polynomial is one in that time. It keeps
+    its sign if it has it at the sample and no coefficient of a positive power is negative.
     """
     step = layout.grid.steps
 
     def state(quantity: Quantity) -> Polynomial[int]:
+        """Return a quantity as a polynomial in the columns of the last sample and the time since then."""
         vehicle, signal = quantity
         now = layout.state(vehicle, signal, step)
-        if isinstance(signal, OwnName):
+        if isinstance(signal, CustomSignalName):
             return now
         match signal:
             case "s":
@@ -220,9 +235,9 @@ def inequality_for_ever(inequality: Inequality[Quantity], layout: Layout) -> Cir
         powers.setdefault(power, {})[rest] = factor
     return all_of(
         Leaf(
-            Inequality(Polynomial(terms), inequality.strict, inequality.margin)
+            Inequality(Polynomial(terms), inequality.strict, inequality.margin, origin)
             if power == 0
-            else Inequality(Polynomial(terms), False)
+            else Inequality(Polynomial(terms), False, origin=origin)
         )
         for power, terms in sorted(powers.items())
     )

@@ -1,4 +1,4 @@
-"""A comparison becomes a circuit of polynomial inequalities over vehicle signals, exactly.
+"""Rewrites a comparison of terms exactly as a circuit of polynomial inequalities over vehicle signals.
 
 ``max`` and ``min`` that enter linearly become disjunctions or conjunctions; inside products and
 powers they are split into cases. 1/x is ∞ at 0 (paper, appendix *Robust Semantics*): by sign.
@@ -15,25 +15,25 @@ from roadproof.logic.custom_names import code_of
 from roadproof.logic.formula import Compare
 from roadproof.logic.terms import Term
 from roadproof.world.polynomial import Polynomial, constant, variable
-from roadproof.world.signals import SIZES, OwnName
+from roadproof.world.signals import SIZES, CustomSignalName
 from roadproof.world.vehicle import Vehicle
 
-# A vehicle and one of its signals, such as ("SV", "v_lon"); "" and an own signal of no vehicle.
-Quantity: TypeAlias = tuple[str, t.SignalName | OwnName]
+# A vehicle and one of its signals, such as ("SV", "v_lon"); "" and a custom signal of no vehicle.
+Quantity: TypeAlias = tuple[str, t.SignalName | CustomSignalName]
 KIND: t.SizeName = "kind"
 Sizes: TypeAlias = Mapping[tuple[str, t.SizeName], Fraction]
 Summands: TypeAlias = tuple[tuple[Fraction, Term], ...]
 
 
 def sizes_of(vehicles: Mapping[str, Vehicle]) -> Sizes:
-    """The boxes of ``vehicles``, in m, and their kinds where models say what they are."""
+    """Return lengths and widths of ``vehicles`` (m), and codes of declared kinds."""
     boxes = {(name, size): getattr(vehicle, size) for name, vehicle in vehicles.items() for size in SIZES}
     kinds = {(n, KIND): Fraction(code_of(v.kind)) for n, v in vehicles.items() if v.kind is not None}
     return {**boxes, **kinds}
 
 
 def inequalities_of(atom: Compare, sizes: Sizes) -> Circuit[Inequality[Quantity]]:
-    """A circuit that is true exactly where ``atom`` is; ``sizes`` gives (vehicle, length or width) in m."""
+    """Return a circuit that is true exactly where ``atom`` is; ``sizes``: (vehicle, length or width) to m."""
     if isinstance(atom.left, t.Inverse) or isinstance(atom.right, t.Inverse):
         return _compare_inverses(atom, sizes)
     low, high = (atom.right, atom.left) if atom.op in (">", ">=") else (atom.left, atom.right)
@@ -46,8 +46,13 @@ def _compare_inverses(atom: Compare, sizes: Sizes) -> Circuit[Inequality[Quantit
         conditions = [_not_negative(c, s, sizes) for c, s in (*left[0], *right[0])]
         if left[1] is None or right[1] is None:
             larger = [side for side, value in (("left", left[1]), ("right", right[1])) if value is None]
-            holds = {"<": larger == ["right"], "<=": "right" in larger}
-            holds |= {">": larger == ["left"], ">=": "left" in larger}
+            only = larger[0] if len(larger) == 1 else None
+            holds = {
+                "<": only == "right",
+                "<=": "right" in larger,
+                ">": only == "left",
+                ">=": "left" in larger,
+            }
             conditions.append(All(()) if holds[atom.op] else AnyOf(()))
         else:
             (top, bottom), (other_top, other_bottom) = left[1], right[1]
@@ -82,7 +87,7 @@ def _not_negative(term: Term, strict: bool, sizes: Sizes) -> Circuit[Inequality[
     plain = _sum(summands)
     extremum = _inner_extremum(plain)
     if extremum is None:
-        polynomial = polynomial_of(plain, sizes)
+        polynomial = term_polynomial(plain, sizes)
         if polynomial.degree == 0:
             value = polynomial.constant
             return All(()) if value > 0 or (value == 0 and not strict) else AnyOf(())
@@ -94,7 +99,9 @@ def _not_negative(term: Term, strict: bool, sizes: Sizes) -> Circuit[Inequality[
             ordered = [_not_negative(t.subtract(chosen, x), False, sizes) for x in others]
         else:
             ordered = [_not_negative(t.subtract(x, chosen), False, sizes) for x in others]
-        cases.append(all_of([*ordered, _not_negative(t.put(plain, extremum, chosen), strict, sizes)]))
+        cases.append(
+            all_of([*ordered, _not_negative(t.replace_term(plain, extremum, chosen), strict, sizes)])
+        )
     return any_of(cases)
 
 
@@ -107,15 +114,17 @@ def _summands(term: Term, factor: Fraction, sizes: Sizes) -> Summands:
             open_factors = [x for x in factors if not _is_constant(x)]
             for x in factors:
                 if _is_constant(x):
-                    factor *= polynomial_of(x, sizes).constant
+                    factor *= term_polynomial(x, sizes).constant
             if len(open_factors) == 1:
                 return _summands(open_factors[0], factor, sizes)
             return ((factor, t.Product(tuple(open_factors)) if open_factors else t.number(1)),)
         case t.Quotient(numerator, denominator) if not any(
             isinstance(x, t.Maximum | t.Minimum) for x in _walk(denominator)
         ):
-            return _summands(numerator, factor / polynomial_of(denominator, sizes).constant, sizes)
-        case _:
+            return _summands(numerator, factor / term_polynomial(denominator, sizes).constant, sizes)
+        case t.Quotient() | t.Power() | t.Maximum() | t.Minimum() | t.Inverse():
+            return ((factor, term),)
+        case t.Number() | t.Parameter() | t.Variable() | t.Signal() | t.Size() | t.CustomSignal():
             return ((factor, term),)
 
 
@@ -134,12 +143,12 @@ def _walk(term: Term) -> list[Term]:
 
 
 def _inner_extremum(term: Term) -> t.Maximum | t.Minimum | None:
-    found = [x for x in _walk(term) if isinstance(x, t.Maximum | t.Minimum)]
-    return found[-1] if found else None
+    extrema = [x for x in _walk(term) if isinstance(x, t.Maximum | t.Minimum)]
+    return extrema[-1] if extrema else None
 
 
-def polynomial_of(term: Term, sizes: Sizes) -> Polynomial[Quantity]:
-    """A term without extrema as a polynomial of signals. Raises ``ValueError`` for open parameters."""
+def term_polynomial(term: Term, sizes: Sizes) -> Polynomial[Quantity]:
+    """Return a term without extrema as a polynomial of signals. Raises ``ValueError`` for open parameters."""
     match term:
         case t.Number(value, _):
             return constant(value)
@@ -147,28 +156,28 @@ def polynomial_of(term: Term, sizes: Sizes) -> Polynomial[Quantity]:
             return constant(sizes[vehicle, name])
         case t.Signal(name, vehicle):
             return variable((vehicle, name))
-        case t.Own(name, vehicle):
-            return variable((vehicle, OwnName(name)))
+        case t.CustomSignal(name, vehicle):
+            return variable((vehicle, CustomSignalName(name)))
         case t.Sum(terms):
             total: Polynomial[Quantity] = constant(Fraction(0))
             for x in terms:
-                total = total + polynomial_of(x, sizes)
+                total = total + term_polynomial(x, sizes)
             return total
         case t.Product(factors):
             result: Polynomial[Quantity] = constant(Fraction(1))
             for x in factors:
-                result = result * polynomial_of(x, sizes)
+                result = result * term_polynomial(x, sizes)
             return result
         case t.Power(base, exponent):
             result = constant(Fraction(1))
             for _ in range(exponent):
-                result = result * polynomial_of(base, sizes)
+                result = result * term_polynomial(base, sizes)
             return result
         case t.Quotient(numerator, denominator):
-            divisor = polynomial_of(denominator, sizes)
+            divisor = term_polynomial(denominator, sizes)
             if divisor.degree > 0 or divisor.constant == 0:
                 raise ValueError("a divisor must be a number other than 0")
-            return polynomial_of(numerator, sizes).scaled(1 / divisor.constant)
+            return term_polynomial(numerator, sizes).scaled(1 / divisor.constant)
         case t.Parameter(name, _) | t.Variable(name, _):
             raise ValueError(f"'{name}' has no value: substitute values first")
         case t.Maximum() | t.Minimum() | t.Inverse():

@@ -10,15 +10,15 @@ from fractions import Fraction
 from itertools import chain
 from typing import assert_never
 
-from roadproof.engines.encode.problem import Column, Row, Unknown, row_of
+from roadproof.engines.encode.problem import LimitKind, Origin, RealColumn, Row, Unknown, row_of
 from roadproof.engines.encode.unroll import Grid
 from roadproof.logic import terms as t
-from roadproof.logic.custom_names import own_of
+from roadproof.logic.custom_names import custom_signals_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import leaves_of
 from roadproof.runtime.records import dataclass
 from roadproof.world.polynomial import Polynomial, affine, constant, variable
-from roadproof.world.signals import STARTING, OwnName, SignalName
+from roadproof.world.signals import STARTING, CustomSignalName, SignalName
 from roadproof.world.vehicle import Range, Vehicle
 
 WIDEST = Fraction(1000)
@@ -26,22 +26,24 @@ WIDEST = Fraction(1000)
 
 
 @dataclass(frozen=True)
-class OwnColumns:
-    """An own signal, and between which values it is looked for (SI)."""
+class CustomSignalRange:
+    """A custom signal and the range (SI) in which a search chooses its values."""
 
-    signal: t.Own
+    signal: t.CustomSignal
     range: Range
 
 
-def own_columns(formula: Formula) -> tuple[OwnColumns, ...]:
-    """The own signals of a bound formula, by name and vehicle."""
+def custom_signal_ranges(formula: Formula) -> tuple[CustomSignalRange, ...]:
+    """Return the custom signals of a bound formula with their search ranges, ordered by name and vehicle."""
     numbers = [abs(x.value) for x in leaves_of(formula) if isinstance(x, t.Number)]
     widest = max(WIDEST, 2 * max(numbers, default=Fraction(0)))
-    return tuple(OwnColumns(signal, range_of(signal, widest)) for signal in own_of([formula]))
+    return tuple(
+        CustomSignalRange(signal, search_range(signal, widest)) for signal in custom_signals_of([formula])
+    )
 
 
-def range_of(signal: t.Own, widest: Fraction) -> Range:
-    """Its declared bounds; where one is missing, ``widest`` beyond 0 and beyond the other."""
+def search_range(signal: t.CustomSignal, widest: Fraction) -> Range:
+    """Return the bounds of a custom signal; a missing one is ``widest`` beyond 0 and the other bound."""
     if signal.truth:
         return Fraction(0), Fraction(1)
     low, high = signal.low, signal.high
@@ -51,9 +53,11 @@ def range_of(signal: t.Own, widest: Fraction) -> Range:
     )
 
 
-def index_of(own: Sequence[OwnColumns], name: str, vehicle: str) -> int:
-    """Which of ``own`` is the signal of that name and vehicle."""
-    return next(k for k, x in enumerate(own) if (x.signal.name, x.signal.vehicle) == (name, vehicle))
+def custom_signal_index(custom_signals: Sequence[CustomSignalRange], name: str, vehicle: str) -> int:
+    """Return the index of the custom signal with that name and vehicle."""
+    return next(
+        k for k, x in enumerate(custom_signals) if (x.signal.name, x.signal.vehicle) == (name, vehicle)
+    )
 
 
 # A position and the speed that it grows by.
@@ -62,15 +66,15 @@ _ACROSS: tuple[SignalName, SignalName] = ("d", "v_lat")
 
 
 @dataclass(frozen=True)
-class Layout:
-    """Which column holds which signal of which vehicle at which sample."""
+class ColumnLayout:
+    """The numbering of columns: one column for each starting signal of each vehicle at each sample."""
 
     vehicles: tuple[str, ...]
     grid: Grid
-    own: tuple[OwnColumns, ...] = ()
+    custom_signals: tuple[CustomSignalRange, ...] = ()
 
     def column(self, vehicle: str, signal: SignalName, step: int) -> int:
-        """Raises ``ValueError`` for a signal that follows from others, and so has no columns."""
+        """Return the column of a signal at a sample. Raises ``ValueError`` for derived signals."""
         if signal not in STARTING:
             raise ValueError(f"signal={signal} has no columns: those that have are {', '.join(STARTING)}")
         samples = self.grid.steps + 1
@@ -78,26 +82,26 @@ class Layout:
         return row * samples + step
 
     def unknowns(self, vehicle: str) -> Iterator[Unknown]:
-        """What the columns of a vehicle stand for, in their order."""
+        """Yield the unknowns of a vehicle in the order of their columns."""
         for signal in STARTING:
             for step in range(self.grid.steps + 1):
                 yield Unknown(vehicle, signal, step)
 
-    def own_column(self, vehicle: str, name: str, step: int) -> int:
-        """The columns of own signals come after those of all vehicles."""
-        rows = len(self.vehicles) * len(STARTING) + index_of(self.own, name, vehicle)
+    def custom_signal_column(self, vehicle: str, name: str, step: int) -> int:
+        """Return the column of a custom signal; these come after the columns of all vehicles."""
+        rows = len(self.vehicles) * len(STARTING) + custom_signal_index(self.custom_signals, name, vehicle)
         return rows * (self.grid.steps + 1) + step
 
-    def own_unknowns(self) -> Iterator[Column]:
-        """The columns of own signals, in their order."""
-        for x in self.own:
+    def custom_signal_unknowns(self) -> Iterator[RealColumn]:
+        """Yield the columns of custom signals in their order."""
+        for x in self.custom_signals:
             for step in range(self.grid.steps + 1):
-                yield Column(Unknown(x.signal.vehicle, OwnName(x.signal.name), step), *x.range)
+                yield RealColumn(Unknown(x.signal.vehicle, CustomSignalName(x.signal.name), step), *x.range)
 
-    def state(self, vehicle: str, signal: SignalName | OwnName, step: int) -> Polynomial[int]:
-        """A signal at a sample; an acceleration is that of the piece which begins there, and jerk is none."""
-        if isinstance(signal, OwnName):
-            return variable(self.own_column(vehicle, signal, step))
+    def state(self, vehicle: str, signal: SignalName | CustomSignalName, step: int) -> Polynomial[int]:
+        """Return a signal at a sample; accelerations are those of the step that begins there."""
+        if isinstance(signal, CustomSignalName):
+            return variable(self.custom_signal_column(vehicle, signal, step))
         match signal:
             case "s" | "d" | "v_lon" | "v_lat":
                 return variable(self.column(vehicle, signal, step))
@@ -120,14 +124,14 @@ class Layout:
 
 def encode_motions(
     vehicles: Mapping[str, Vehicle],
-    layout: Layout,
+    layout: ColumnLayout,
     starts: Mapping[str, Range],
     across: Mapping[str, Range],
     natural: bool,
     inside: Fraction,
     straight: Collection[str],
-) -> tuple[tuple[Column, ...], tuple[Row, ...]]:
-    """Columns and rows for ``vehicles``; the columns of own signals come last.
+) -> tuple[tuple[RealColumn, ...], tuple[Row, ...]]:
+    """Columns and rows for ``vehicles``; the columns of custom signals come last.
 
     ``starts``: where the front of each vehicle may be at time 0; ``across``: where its left side may
     be at all (m). ``natural`` asks in addition that no vehicle moves across the road at the first
@@ -138,12 +142,12 @@ def encode_motions(
     """
     grid = layout.grid
     columns = tuple(
-        Column(of, *_bounds(of, vehicle, grid, starts[name], across[name], natural, name in straight))
+        RealColumn(of, *_bounds(of, vehicle, grid, starts[name], across[name], natural, name in straight))
         for name, vehicle in vehicles.items()
         for of in layout.unknowns(name)
     )
     rows = (_rows(name, vehicle, layout, natural, inside) for name, vehicle in vehicles.items())
-    return (*columns, *layout.own_unknowns()), tuple(chain.from_iterable(rows))
+    return (*columns, *layout.custom_signal_unknowns()), tuple(chain.from_iterable(rows))
 
 
 def _bounds(
@@ -166,11 +170,13 @@ def _bounds(
             return max(vehicle.v_lat[0], -bound), min(vehicle.v_lat[1], bound)
         case "v_lat":
             return vehicle.v_lat
-        case _:
+        case _:  # open: only signals that a drive starts with have columns
             raise ValueError(f"signal={of.signal}: the bounds of its columns are not known")
 
 
-def _rows(name: str, vehicle: Vehicle, layout: Layout, natural: bool, inside: Fraction) -> Iterable[Row]:
+def _rows(
+    name: str, vehicle: Vehicle, layout: ColumnLayout, natural: bool, inside: Fraction
+) -> Iterable[Row]:
     grid = layout.grid
     half = grid.dt / 2
     limits_of: Mapping[SignalName, Range] = {"a_lon": vehicle.a_lon, "a_lat": vehicle.a_lat}
@@ -178,25 +184,33 @@ def _rows(name: str, vehicle: Vehicle, layout: Layout, natural: bool, inside: Fr
     def column(signal: SignalName, k: int) -> int:
         return layout.column(name, signal, k)
 
+    def origin(limit: LimitKind, k: int) -> Origin:
+        return Origin(limit, k, (name,))
+
     for k in range(grid.steps):
         for place, speed in (_ALONG, _ACROSS):
             moved = [(column(place, k + 1), Fraction(1)), (column(place, k), Fraction(-1))]
             driven = [(column(speed, k), -half), (column(speed, k + 1), -half)]
-            yield row_of(affine(moved + driven), Fraction(0), Fraction(0))
+            yield row_of(affine(moved + driven), Fraction(0), Fraction(0), origin(LimitKind.MOTION, k))
         for acceleration, limits in limits_of.items():
-            yield row_of(layout.state(name, acceleration, k), limits[0] + inside, limits[1] - inside)
+            yield row_of(
+                layout.state(name, acceleration, k),
+                limits[0] + inside,
+                limits[1] - inside,
+                origin(LimitKind.ACCELERATION, k),
+            )
     for k in range(grid.steps + 1):
         for sign in (1, -1):
             share = [(column("v_lon", k), vehicle.lateral_share), (column("v_lat", k), Fraction(sign))]
-            yield row_of(affine(share), inside, None)
+            yield row_of(affine(share), inside, None, origin(LimitKind.LATERAL_SHARE, k))
     if natural:
         yield from _jumps(name, vehicle, layout, inside)
 
 
-def _jumps(name: str, vehicle: Vehicle, layout: Layout, inside: Fraction) -> Iterable[Row]:
+def _jumps(name: str, vehicle: Vehicle, layout: ColumnLayout, inside: Fraction) -> Iterable[Row]:
     jumps: Mapping[SignalName, Fraction] = {"a_lon": vehicle.jump_lon, "a_lat": vehicle.jump_lat}
     for acceleration, jump in jumps.items():
         for k in range(layout.grid.steps):
             later = layout.state(name, acceleration, k + 1)
             change = later + layout.state(name, acceleration, k).scaled(Fraction(-1))
-            yield row_of(change, inside - jump, jump - inside)
+            yield row_of(change, inside - jump, jump - inside, Origin(LimitKind.JUMP, k, (name,)))

@@ -1,31 +1,78 @@
-"""What solvers are asked: columns, rows, and a circuit of polynomial inequalities, as plain data.
+"""The problems that solvers get: columns, rows and a circuit of polynomial inequalities, as plain data.
 
-A circuit is a tree of conjunctions and disjunctions over leaves, without negation. Its nodes are shared and
-compared by identity, so a consumer that remembers what it did by node does each part once. ``All(())`` is
-true and ``AnyOf(())`` is false.
+A circuit is a tree of conjunctions and disjunctions over leaves, without negation. Its nodes are shared
+and compared by identity, so a consumer that caches by node does each part once. ``All(())`` is true and
+``AnyOf(())`` is false.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+from dataclasses import field
+from enum import StrEnum, unique
 from fractions import Fraction
 from typing import Generic, Literal, TypeAlias, TypeVar, assert_never
 
 from roadproof.runtime.records import dataclass
 from roadproof.world.polynomial import Polynomial
-from roadproof.world.signals import OwnName, SignalName
+from roadproof.world.signals import CustomSignalName, SignalName
 
 V = TypeVar("V")
 
 
+@unique
+class LimitKind(StrEnum):
+    """The kinds of conditions on a drive beside the formula."""
+
+    MOTION = "motion"
+    """Places follow from speeds by the trapezoid rule."""
+    ACCELERATION = "acceleration"
+    """Accelerations are within the limits of the vehicle."""
+    LATERAL_SHARE = "lateral share"
+    """The speed across the road is at most a share of the speed along it."""
+    JUMP = "jump"
+    """Accelerations change by at most the jumps of the vehicle."""
+    REACH = "reach"
+    """Vehicles start within a distance of each other."""
+    ROAD = "road"
+    """Boxes are on the road."""
+    CLEARANCE = "clearance"
+    """Boxes are apart."""
+    LANE = "lane"
+    """Boxes are in a lane at the first and last sample."""
+    ONE_WAY = "one way"
+    """Vehicles move across the road in one direction only."""
+    STEADY = "steady"
+    """Accelerations last two steps."""
+    START = "start"
+    """The drive begins in a given way."""
+    OTHER_DRIVE = "other drive"
+    """The drive differs clearly from one that is known."""
+
+
+@dataclass(frozen=True)
+class Origin:
+    """The part of a question that a row or an inequality encodes, at a step.
+
+    ``part``: the kind of a condition on ``vehicles``, or else a comparison of the formula, which solvers do
+    not read.
+    """
+
+    part: Hashable
+    step: int
+    vehicles: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True)
 class Inequality(Generic[V]):
-    """``polynomial > 0`` where strict, else ``polynomial >= 0``.
+    """A constraint ``polynomial > 0`` where strict, else ``polynomial >= 0``.
 
-    ``margin`` is what a search in floating point keeps in addition; the inequality itself is without.
+    ``margin``: safety margin of a floating-point search; it is no part of the inequality itself.
+    ``origin``: what it encodes, where it is over columns; two inequalities are equal without it.
     """
 
     polynomial: Polynomial[V]
     strict: bool
     margin: Fraction = Fraction(0)
+    origin: Origin | None = field(default=None, compare=False)
 
 
 T = TypeVar("T")
@@ -51,30 +98,30 @@ Circuit: TypeAlias = Leaf[T] | All[T] | AnyOf[T]
 
 
 def all_of(parts: Iterable[Circuit[T]]) -> Circuit[T]:
-    """The conjunction of ``parts``, flattened; false as soon as one part is."""
+    """Return the conjunction of ``parts``, flattened; false as soon as one part is."""
     return _flattened(parts, All, AnyOf)
 
 
 def any_of(parts: Iterable[Circuit[T]]) -> Circuit[T]:
-    """The disjunction of ``parts``, flattened; true as soon as one part is."""
+    """Return the disjunction of ``parts``, flattened; true as soon as one part is."""
     return _flattened(parts, AnyOf, All)
 
 
 def _flattened(
     parts: Iterable[Circuit[T]], kind: type[All[T] | AnyOf[T]], other: type[All[T] | AnyOf[T]]
 ) -> Circuit[T]:
-    """``parts`` joined to one of a ``kind``; a part of the ``other`` kind without parts decides."""
-    kept: dict[int, Circuit[T]] = {}
+    """Join ``parts`` into one node of a ``kind``; an empty part of the ``other`` kind decides the whole."""
+    joined: dict[int, Circuit[T]] = {}
     for part in parts:
         if isinstance(part, other) and not part.parts:
             return part
         inner = part.parts if isinstance(part, kind) else (part,)
-        kept |= {id(p): p for p in inner}
-    return next(iter(kept.values())) if len(kept) == 1 else kind(tuple(kept.values()))
+        joined |= {id(p): p for p in inner}
+    return next(iter(joined.values())) if len(joined) == 1 else kind(tuple(joined.values()))
 
 
 def nodes(circuit: Circuit[T]) -> Iterator[Circuit[T]]:
-    """Every node once, parts before what they are part of; not recursive, so depth does not matter."""
+    """Yield every node once, parts before wholes, without recursion, so depth is no limit."""
     seen: set[int] = set()
     waiting: list[tuple[Circuit[T], bool]] = [(circuit, False)]
     while waiting:
@@ -91,7 +138,7 @@ def nodes(circuit: Circuit[T]) -> Iterator[Circuit[T]]:
 def fold(
     circuit: Circuit[T], leaf: Callable[[T], S], both: Callable[[list[S]], S], either: Callable[[list[S]], S]
 ) -> S:
-    """The value of ``circuit`` computed from its leaves up, each node once."""
+    """Return the value of ``circuit``, computed from its leaves up, each node once."""
     done: dict[int, S] = {}
     for node in nodes(circuit):
         match node:
@@ -107,7 +154,7 @@ def fold(
 
 
 def replace_leaves(circuit: Circuit[T], change: Callable[[T], Circuit[S]]) -> Circuit[S]:
-    """``circuit`` with each leaf replaced by a circuit."""
+    """Return ``circuit`` with each leaf replaced by a circuit."""
 
     def both(parts: list[Circuit[S]]) -> Circuit[S]:
         return all_of(parts)
@@ -119,15 +166,15 @@ def replace_leaves(circuit: Circuit[T], change: Callable[[T], Circuit[S]]) -> Ci
 
 
 def evaluate(circuit: Circuit[T], truth: Callable[[T], bool]) -> bool:
-    """The truth of ``circuit`` where ``truth`` gives that of each leaf."""
+    """Return the truth of ``circuit``, given that of each leaf."""
     return fold(circuit, truth, all, any)
 
 
 def implicant(circuit: Circuit[T], margin: Callable[[T], float]) -> tuple[T, ...]:
-    """Leaves that together make ``circuit`` true, chosen so that the least margin is greatest.
+    """Return leaves that together make ``circuit`` true, chosen so that their least margin is greatest.
 
-    ``margin`` is positive where a leaf is true. Where the circuit is true by ``margin`` all leaves
-    returned are; all of them being true makes the circuit true whatever the others are.
+    ``margin`` is positive where a leaf is true. If the circuit is false, leaves are returned all the same;
+    ``AnyOf(())``, which nothing makes true, contributes no leaf.
     """
     value: dict[int, float] = {}
     for node in nodes(circuit):
@@ -167,19 +214,19 @@ ColumnInequality: TypeAlias = Inequality[int]
 
 @dataclass(frozen=True)
 class Unknown:
-    """What a column stands for: a signal of a vehicle at a sample."""
+    """The meaning of a column: a signal of a vehicle at a sample."""
 
     vehicle: str
-    signal: SignalName | OwnName
+    signal: SignalName | CustomSignalName
     step: int
 
     def __str__(self) -> str:
-        return f"{self.vehicle}.{self.signal}.{self.step}"
+        return f"{self.vehicle}.{self.signal}@{self.step}"
 
 
 @dataclass(frozen=True)
-class Column:
-    """A real unknown between two bounds."""
+class RealColumn:
+    """A column of a problem: a real unknown between two bounds."""
 
     of: Unknown
     low: Fraction
@@ -188,19 +235,20 @@ class Column:
 
 @dataclass(frozen=True)
 class Row:
-    """low <= Σ coefficient · column <= high; None is without bound."""
+    """A linear constraint low <= Σ coefficient · column <= high; None is no bound."""
 
     terms: Mapping[int, Fraction]
     low: Fraction | None
     high: Fraction | None
+    origin: Origin | None = None
 
 
 Status: TypeAlias = Literal["found", "infeasible", "unknown"]
 
 
 @dataclass(frozen=True)
-class Solution:
-    """Values of a problem's columns where ``status`` is found, rational where the search was exact."""
+class ColumnValues:
+    """A solver's result: values of the columns where ``status`` is found, rational from an exact solver."""
 
     status: Status
     values: tuple[float, ...] | tuple[Fraction, ...] = ()
@@ -208,18 +256,18 @@ class Solution:
 
 @dataclass(frozen=True)
 class Problem:
-    """Find values of the columns within their bounds that satisfy every row and the circuit."""
+    """The task to find column values within their bounds that satisfy every row and the circuit."""
 
-    columns: tuple[Column, ...]
+    columns: tuple[RealColumn, ...]
     rows: tuple[Row, ...]
     circuit: Circuit[ColumnInequality]
 
     def also(self, circuit: Circuit[ColumnInequality]) -> "Problem":
-        """The same problem with one more condition."""
+        """Return the problem with one more condition."""
         return Problem(self.columns, self.rows, all_of([self.circuit, circuit]))
 
     def sizes(self) -> dict[str, int]:
-        """Numbers of columns, rows, circuit nodes and distinct inequalities."""
+        """Return the numbers of columns, rows, circuit nodes and inequalities."""
         every = list(nodes(self.circuit))
         return {
             "columns": len(self.columns),
@@ -229,11 +277,12 @@ class Problem:
         }
 
 
-def row_of(polynomial: Polynomial[int], low: Fraction | None, high: Fraction | None) -> Row:
-    """A row from an affine polynomial between two bounds."""
+def row_of(polynomial: Polynomial[int], low: Fraction | None, high: Fraction | None, origin: Origin) -> Row:
+    """Return the row that keeps an affine polynomial between two bounds."""
     shift = polynomial.constant
     return Row(
         {m[0]: c for m, c in polynomial.terms.items() if m},
         None if low is None else low - shift,
         None if high is None else high - shift,
+        origin,
     )

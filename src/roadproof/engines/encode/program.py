@@ -1,4 +1,4 @@
-"""Problems as programs of integers, exactly, for trees that show that there is no solution."""
+"""Writes a problem exactly as an integer program, for refutation trees that others can check."""
 
 import math
 from collections.abc import Mapping
@@ -7,11 +7,11 @@ from fractions import Fraction
 from typing import assert_never
 
 from roadproof.engines.encode.problem import All, AnyOf, ColumnInequality, Leaf, Problem, nodes
-from roadproof.evidence.program import Either, Every, Linear, Node, Program
+from roadproof.evidence.program import Conjunction, Disjunction, DisjunctiveProgram, Linear, Node
 
 
-def program_of(problem: Problem) -> Program | None:
-    """The same problem in integers; None where an inequality has a degree above 2."""
+def integer_program(problem: Problem) -> DisjunctiveProgram | None:
+    """Return the problem in integers; None where an inequality has a degree above 2."""
     writer = _Writer(len(problem.columns))
     equal: list[Linear] = []
     above: list[Linear] = []
@@ -30,7 +30,7 @@ def program_of(problem: Problem) -> Program | None:
     ends = [(column.low, column.high) for column in problem.columns]
     scale = math.lcm(*(end.denominator for pair in ends for end in pair))
     box = tuple((int(low * scale), int(high * scale)) for low, high in ends)
-    return Program(scale, box, tuple(writer.products), tuple(equal), tuple(above), written)
+    return DisjunctiveProgram(scale, box, tuple(writer.products), tuple(equal), tuple(above), written)
 
 
 def _nodes(problem: Problem, writer: "_Writer") -> tuple[Node, ...] | None:
@@ -45,9 +45,9 @@ def _nodes(problem: Problem, writer: "_Writer") -> tuple[Node, ...] | None:
                 terms = {m: factor for m, factor in polynomial.terms.items() if m}
                 written.append(replace(writer.linear(terms, polynomial.constant), strict=inequality.strict))
             case All(parts):
-                written.append(Every(tuple(numbers[id(p)] for p in parts)))
+                written.append(Conjunction(tuple(numbers[id(p)] for p in parts)))
             case AnyOf(parts):
-                written.append(Either(tuple(numbers[id(p)] for p in parts)))
+                written.append(Disjunction(tuple(numbers[id(p)] for p in parts)))
             case _:
                 assert_never(node)
         numbers[id(node)] = len(written) - 1
@@ -59,14 +59,14 @@ def _degree(inequality: ColumnInequality) -> int:
 
 
 class _Writer:
-    """Polynomials of degree 2 as linear expressions, with a column for each product."""
+    """A writer of degree-2 polynomials as linear expressions, with a column for each product."""
 
     def __init__(self, columns: int) -> None:
         self.columns = columns
         self.products: dict[tuple[int, int], int] = {}
 
     def linear(self, terms: Mapping[tuple[int, ...], Fraction], constant: Fraction) -> Linear:
-        """Multiplied by the least number that makes it whole."""
+        """Return a polynomial as a linear expression, scaled by the least factor that makes it integral."""
         whole = math.lcm(constant.denominator, *(factor.denominator for factor in terms.values()))
         written = ((self._column(monomial), int(factor * whole)) for monomial, factor in terms.items())
         return Linear(tuple((column, factor) for column, factor in written if factor), int(constant * whole))

@@ -1,10 +1,9 @@
-"""Time becomes steps, here and nowhere else.
+"""Unrolls temporal operators over a grid: a bound formula becomes a circuit over atoms at samples.
 
-A bound formula and a grid become a circuit over atoms at samples. Negation disappears: it is pushed
-to the comparisons, where it turns ``<`` into ``>=``. Grid semantics: an operator ranges over samples
-k·dt; the last sample stands for every later one, so that a window that reaches past the horizon
-ends on it (the motion goes on without acceleration, see ``encode.build``). Until is the paper's
-(semantics §1): the left side is asked for from the start of the interval on, not before.
+Negation disappears: it is pushed to the comparisons, where it turns ``<`` into ``>=``. Grid semantics:
+an operator ranges over samples k·dt; the last sample stands for every later one, so a window that
+reaches past the horizon ends on it (without acceleration from there on, see ``encode.build``). Until is
+the paper's (semantics §1): its left side must hold from the start of the interval on, not before.
 """
 
 from collections.abc import Callable
@@ -23,7 +22,7 @@ from roadproof.runtime.records import dataclass
 
 @dataclass(frozen=True)
 class Grid:
-    """Samples 0, dt, …, steps·dt (seconds)."""
+    """Sample times 0, dt, …, steps·dt (seconds)."""
 
     dt: Fraction
     steps: int
@@ -33,11 +32,11 @@ class Grid:
         return self.dt * self.steps
 
     def finer(self, factor: int) -> "Grid":
-        """The same horizon in ``factor`` times as many steps."""
+        """Return the grid with ``factor`` times as many steps up to the same horizon."""
         return Grid(self.dt / factor, self.steps * factor)
 
     def window(self, interval: Interval) -> tuple[int, int | None]:
-        """An interval in steps; None is without end. Raises ``UsageError`` for no multiple of dt."""
+        """Return an interval in steps; None is unbounded. Raises ``UsageError`` for no multiple of dt."""
         low, high = bounds_of(interval)
         return self._steps(low), None if high is None else self._steps(high)
 
@@ -52,30 +51,33 @@ class Grid:
 
 
 def common_step(a: Fraction, b: Fraction) -> Fraction:
-    """The greatest number of which both are multiples; of 0 and b it is b."""
+    """Return the greatest common divisor of two rationals; of 0 and b it is b."""
     return Fraction(
         gcd(a.numerator * b.denominator, b.numerator * a.denominator), a.denominator * b.denominator
     )
 
 
 @dataclass(frozen=True)
-class At:
-    """A comparison at a sample; at the last sample it is asked for from there on for ever."""
+class TimedAtom:
+    """A comparison at step ``step``.
+
+    The last step stands for every later time, unless ``Assumptions.last_sample_persists`` is False.
+    """
 
     atom: Compare
     step: int
 
 
-def unroll(formula: Formula, grid: Grid) -> Circuit[At]:
-    """The circuit that is true exactly where ``formula`` holds at sample 0 of the grid.
+def unroll(formula: Formula, grid: Grid) -> Circuit[TimedAtom]:
+    """Return the circuit that is true exactly where ``formula`` holds at sample 0 of the grid.
 
-    ``formula`` is bound: no parameters, quantifiers or lane atoms.
+    ``formula`` is bound: it has no parameters, quantifiers or lane atoms.
     """
     return unroll_at(formula, grid, 0)
 
 
-def unroll_at(formula: Formula, grid: Grid, step: int) -> Circuit[At]:
-    """The same at another sample."""
+def unroll_at(formula: Formula, grid: Grid, step: int) -> Circuit[TimedAtom]:
+    """Return the circuit that is true exactly where ``formula`` holds at sample ``step`` of the grid."""
     return _Unroller(grid).at(formula, True, step)
 
 
@@ -84,28 +86,28 @@ class _Unroller:
         self.grid = grid
         self.at = cache(self._at)
 
-    def _at(self, formula: Formula, wanted: bool, step: int) -> Circuit[At]:
-        """``formula`` (its negation where not ``wanted``) at a sample."""
-        both, either = (all_of, any_of) if wanted else (any_of, all_of)
+    def _at(self, formula: Formula, positive: bool, step: int) -> Circuit[TimedAtom]:
+        """Return the circuit of ``formula`` at a sample, or of its negation where not ``positive``."""
+        both, either = (all_of, any_of) if positive else (any_of, all_of)
         match formula:
             case f.Truth(value):
-                return All(()) if value == wanted else AnyOf(())
+                return All(()) if value == positive else AnyOf(())
             case Compare(left, op, right):
-                return Leaf(At(formula if wanted else Compare(left, NEGATED[op], right), step))
+                return Leaf(TimedAtom(formula if positive else Compare(left, NEGATED[op], right), step))
             case f.Not(body):
-                return self.at(body, not wanted, step)
+                return self.at(body, not positive, step)
             case f.And(parts):
-                return both(self.at(p, wanted, step) for p in parts)
+                return both(self.at(p, positive, step) for p in parts)
             case f.Or(parts):
-                return either(self.at(p, wanted, step) for p in parts)
+                return either(self.at(p, positive, step) for p in parts)
             case f.Application(_, _, body):
-                return self.at(body, wanted, step)
+                return self.at(body, positive, step)
             case f.Eventually(interval, body):
-                return either(self.at(body, wanted, k) for k in self._samples(interval, step))
+                return either(self.at(body, positive, k) for k in self._samples(interval, step))
             case f.Always(interval, body):
-                return both(self.at(body, wanted, k) for k in self._samples(interval, step))
+                return both(self.at(body, positive, k) for k in self._samples(interval, step))
             case f.Until(left, interval, right):
-                return self._until(left, self._samples(interval, step), right, wanted, both, either)
+                return self._until(left, self._samples(interval, step), right, positive, both, either)
             case f.Occupies() | f.Some() | f.Every():
                 raise ValueError(f"bind the formula to a road first: {type(formula).__name__}")
             case _:
@@ -122,12 +124,12 @@ class _Unroller:
         left: Formula,
         samples: range,
         right: Formula,
-        wanted: bool,
-        both: Callable[[list[Circuit[At]]], Circuit[At]],
-        either: Callable[[list[Circuit[At]]], Circuit[At]],
-    ) -> Circuit[At]:
-        """From the last sample back: ψ now, or φ now and the same from the next sample on."""
-        result = self.at(right, wanted, samples[-1])
+        positive: bool,
+        both: Callable[[list[Circuit[TimedAtom]]], Circuit[TimedAtom]],
+        either: Callable[[list[Circuit[TimedAtom]]], Circuit[TimedAtom]],
+    ) -> Circuit[TimedAtom]:
+        """Build until from the last sample back: ψ now, or φ now and the until from the next sample on."""
+        result = self.at(right, positive, samples[-1])
         for k in reversed(samples[:-1]):
-            result = either([self.at(right, wanted, k), both([self.at(left, wanted, k), result])])
+            result = either([self.at(right, positive, k), both([self.at(left, positive, k), result])])
         return result

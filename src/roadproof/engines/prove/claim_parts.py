@@ -1,4 +1,4 @@
-"""The parts of a claim that are proved one at a time, its premise, and readings that may bring a proof."""
+"""Splits a claim into parts that are proved one at a time, finds its premise and other readings."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -10,31 +10,32 @@ from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 
 
-def conjuncts(formula: Formula) -> Iterator[Formula]:
-    """The parts of a conjunction, of its conjunctions, and so on."""
+def claim_conjuncts(formula: Formula) -> Iterator[Formula]:
+    """Yield the parts of nested conjunctions."""
     if isinstance(formula, f.And):
         for part in formula.parts:
-            yield from conjuncts(part)
+            yield from claim_conjuncts(part)
     else:
         yield formula
 
 
 def premise_of(query: Query, formula: Formula) -> Formula | None:
-    """A of a claim ``A -> B``, which is built as ``not A or B``, and as ``not A`` where B is ``false``."""
+    """Return A of a claim ``A -> B``, built as ``not A or B``, or as ``not A`` where B is ``false``."""
     match query.claim.body:
         case syntax.Binary("->", _, syntax.Literal_(value)) if value is False:
             return f.negation(formula)
     match formula:
         case f.Or((f.Not(premise), _)):
             return premise
-        case _:
+        case _:  # open: formulas of another shape are no implications
             return None
 
 
 def other_readings(formula: Formula) -> Iterator[Reading]:
-    """Readings other than the usual one that the claim gives a reason to try.
+    """Yield alternative choices of atoms that may bring a proof.
 
-    By names where a definition about several instants is met twice; by lanelets where a predicate hides them.
+    ``names``, where a definition about several instants occurs twice; ``lanelets``, where a predicate hides
+    quantifiers over lanelets.
     """
     if any(count > 1 for count in Counter(_temporal_names(formula)).values()):
         yield "names"
@@ -43,7 +44,7 @@ def other_readings(formula: Formula) -> Iterator[Reading]:
 
 
 def _temporal_names(formula: Formula) -> Iterator[Formula]:
-    """Definitions about several instants that are part of no other, as often as they are met."""
+    """Yield every occurrence of an outermost definition about several instants."""
     if is_temporal_name(formula):
         yield formula
     else:

@@ -1,9 +1,8 @@
 """The negated claim as a growing set of ground clauses in a live solver session.
 
-Each quantifier met at a moment is an obligation with a Boolean name; asserting the name demands
-what the quantifier demands. Existentials are named at once; universals wait to be instantiated.
-This is the finder: what it finds is derived again by ``evidence.derivation``, which shares no
-grounding code with it.
+Each quantifier at a moment is an obligation with a Boolean name; asserting the name asserts what the
+quantifier requires. Existentials get a witness name at once; universals wait to be instantiated.
+Nothing rests on this: ``evidence.derivation`` derives proofs again and shares no grounding code.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -12,12 +11,12 @@ from fractions import Fraction
 from typing import TypeAlias, assert_never
 
 from roadproof.engines.prove.roads import Roster
-from roadproof.engines.prove.states import is_plain
+from roadproof.engines.prove.states import is_propositional
 from roadproof.engines.solve.recall import RecallingSession
 from roadproof.evidence.atoms import Atoms, is_rigid
-from roadproof.evidence.road_axioms import ZONES, membership, true_of_roads
-from roadproof.evidence.sites import Lemma, Site, prefix_form
-from roadproof.evidence.times import ZERO, Moment, at, compared_times, constant, moment_of
+from roadproof.evidence.road_axioms import ZONES, membership, road_clauses
+from roadproof.evidence.sites import Site, StateLemma, prefix_form
+from roadproof.evidence.times import ZERO, Moment, compared_times, constant, moment_of, named_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import rename
@@ -29,14 +28,14 @@ Timed: TypeAlias = f.Temporal | f.Some | f.Every
 
 @dataclass(frozen=True)
 class Window:
-    """Moments from ``low`` to ``high`` (None: unbounded); ``strict`` leaves the end out."""
+    """The moments from ``low`` to ``high`` (None: unbounded); ``strict`` excludes the end."""
 
     low: Moment
     high: Moment | None
     strict: bool = False
 
     def inside(self, instants: Iterable[Fraction], values: dict[str, Fraction]) -> list[Fraction]:
-        """Those of ``instants`` that lie inside, in the model ``values``."""
+        """Return the ``instants`` inside the window, under the model ``values``."""
         low = self.low.value(values)
         if self.high is None:
             return [instant for instant in instants if low <= instant]
@@ -44,6 +43,7 @@ class Window:
         return [x for x in instants if low <= x and (x < high if self.strict else x <= high)]
 
     def smt(self, when: Moment) -> list[str]:
+        """Return the SMT conditions that ``when`` lies in the window."""
         guards = [f"(<= {self.low.smt()} {when.smt()})"]
         if self.high is not None:
             guards.append(f"({'<' if self.strict else '<='} {when.smt()} {self.high.smt()})")
@@ -52,9 +52,9 @@ class Window:
 
 @dataclass
 class Universal:
-    """A universal over time: at every moment of ``window``, what ``body`` says there.
+    """A universal over time: at every moment of ``window``, the condition ``body``.
 
-    ``easily`` is enough for ``body``, and speaks of that moment alone.
+    ``locally`` implies ``body`` and is a condition about that moment alone.
     """
 
     site: Site
@@ -62,7 +62,7 @@ class Universal:
     window: Window
     body: Callable[[Moment], str]
     is_flat: bool
-    easily: Callable[[Moment], str]
+    locally: Callable[[Moment], str]
     done: list[Moment] = field(default_factory=list)
 
 
@@ -79,21 +79,21 @@ class RoadUniversal:
 
 @dataclass
 class Grounding:
-    """All that has been told to the solver, by what it was told for.
+    """All text sent to the solver, by the reason for it.
 
-    ``switches`` turns instance and lemma clauses on: assumption name → what it stands for.
+    ``switches`` turn instance and lemma clauses on: assumption name to the instance or lemma.
     ``prefixes`` begin the names of times and of lanes or lanelets; no name of the claim begins so.
-    ``timing`` are the parameters in interval bounds. ``origins`` tells under which switch a name was
-    met first; '' is in the claim itself.
-    ``wishes`` are assumptions that a named time falls on a moment known before it: models in which
-    they hold have few instants, so that instantiation comes to an end.
+    ``timing`` are the parameters in interval bounds. ``origins`` gives the switch under which a name first
+    occurred; '' is in the claim itself.
+    ``wishes`` are assumptions that a named time falls on a moment known before it: models in which they hold
+    have few instants, so instantiation ends soon.
     """
 
     atoms: Atoms
     bounds: dict[str, str]
     prefixes: tuple[str, str] = ("t", "M")
     timing: frozenset[str] = frozenset()
-    wishful: bool = False
+    prefer_known_times: bool = False
     names: dict[Site, str] = field(default_factory=dict)
     roster: Roster | None = None
     session: RecallingSession = field(default_factory=RecallingSession)
@@ -102,7 +102,7 @@ class Grounding:
     moments: dict[Moment, None] = field(default_factory=lambda: {ZERO: None})
     elements: dict[str, f.Domain] = field(default_factory=dict)
     facts: dict[tuple[f.Domain, str], None] = field(default_factory=dict)
-    switches: dict[str, tuple[Site, str] | Lemma] = field(default_factory=dict)
+    switches: dict[str, tuple[Site, str] | StateLemma] = field(default_factory=dict)
     wishes: list[str] = field(default_factory=list)
     applied: dict[tuple[str, Moment], str] = field(default_factory=dict)
     origins: dict[str, str] = field(default_factory=dict)
@@ -111,7 +111,7 @@ class Grounding:
     _declared: set[str] = field(default_factory=set)
 
     def known_parameters(self) -> list[str]:
-        """The parameters that some clause speaks of."""
+        """Return the parameters that occur in some clause."""
         return [name for name in self.bounds if name in self._declared]
 
     def deny(self, formula: Formula) -> None:
@@ -119,10 +119,10 @@ class Grounding:
         self.session.tell(f"(assert {self.truth(formula, False, ZERO)})")
         self.origins = dict.fromkeys(self.origins, "")
 
-    def truth(self, formula: Formula, positive: bool, moment: Moment, easily: bool = False) -> str:
-        """What it takes for ``formula`` to be true, or false, at ``moment``.
+    def truth(self, formula: Formula, positive: bool, moment: Moment, locally: bool = False) -> str:
+        """Return the SMT condition for ``formula`` to be true (or false, if not ``positive``) at ``moment``.
 
-        ``easily``: what is enough for it, and speaks of that moment alone.
+        ``locally``: a sufficient condition about that moment alone.
         """
         match formula:
             case f.Truth(value):
@@ -131,18 +131,19 @@ class Grounding:
                 applied = self.atom(name, moment)
                 return applied if positive else f"(not {applied})"
             case f.Not(body):
-                return self.truth(body, not positive, moment, easily)
+                return self.truth(body, not positive, moment, locally)
             case f.And(parts) | f.Or(parts):
                 word = "and" if isinstance(formula, f.And) == positive else "or"
-                return f"({word} {' '.join(self.truth(p, positive, moment, easily) for p in parts)})"
+                return f"({word} {' '.join(self.truth(p, positive, moment, locally) for p in parts)})"
             case f.Until() | f.Eventually() | f.Always() | f.Some() | f.Every():
-                return "false" if easily else self._obligation(formula, positive, moment)
+                return "false" if locally else self._obligation(formula, positive, moment)
             case f.Compare() | f.Occupies():
                 raise ValueError(f"no atom: {type(formula).__name__}; abstract the formula first")
             case _:
                 assert_never(formula)
 
     def atom(self, name: str, moment: Moment) -> str:
+        """Return the SMT term of an atom at a moment."""
         known = self._atoms.get((name, moment))
         if known is None:
             known = self._atoms[name, moment] = self._atom(name, moment)
@@ -160,7 +161,7 @@ class Grounding:
         return self.applied[name, when]
 
     def declare_moment(self, moment: Moment) -> str:
-        """The moment in SMT-LIB, its parameters known to the solver with their bounds."""
+        """Return the moment in SMT-LIB, with its parameters and their bounds declared to the solver."""
         for name, _ in moment.parts:
             if name in self.bounds:
                 bound = self.bounds[name]
@@ -208,7 +209,7 @@ class Grounding:
                         window,
                         lambda when: self._fails(until, site, window.low, when),
                         False,
-                        lambda when: self.truth(right, False, when, easily=True),
+                        lambda when: self.truth(right, False, when, locally=True),
                     )
                 )
             case f.Some(variable, domain, body) | f.Every(variable, domain, body):
@@ -230,7 +231,7 @@ class Grounding:
     def _over_roster(
         self, roster: Roster, formula: f.Some | f.Every, positive: bool, at_element: Callable[[str], str]
     ) -> str:
-        """A quantifier over all elements of the roster; a lanelet has its lane there, and one zone."""
+        """Expand a quantifier over all elements of the roster; there a lanelet has its lane and one zone."""
         domain, exists = formula.domain, isinstance(formula, f.Some) == positive
         parts = ["false" if exists else "true"]
         for element in roster.members(domain):
@@ -259,7 +260,7 @@ class Grounding:
         self.session.tell(f"(assert (=> {switch} (and {' '.join(parts)})))")
 
     def _wait(self, site: Site, switch: str, window: Window, body: Formula, positive: bool) -> None:
-        flat = is_plain(body)
+        flat = is_propositional(body)
         self.universals.append(
             Universal(
                 site,
@@ -267,7 +268,7 @@ class Grounding:
                 window,
                 lambda when: self.truth(body, positive, when),
                 flat,
-                lambda when: self.truth(body, positive, when, easily=True),
+                lambda when: self.truth(body, positive, when, locally=True),
             )
         )
 
@@ -275,13 +276,13 @@ class Grounding:
         name = self.names.setdefault(site, f"{self.prefixes[0]}{len(self.names) + 1}")
         self.origins.setdefault(name, self._next_switch())
         self._declare(name, f"(declare-const {name} Real)")
-        if self.wishful:
+        if self.prefer_known_times:
             wish = f"w${name}"
             known = " ".join(f"(= {name} {m.smt()})" for m in dict.fromkeys([earliest, *self.moments]))
             self.session.tell(f"(declare-const {wish} Bool)(assert (=> {wish} (or {known})))")
             self.wishes.append(wish)
-        self.moments[at(name)] = None
-        return at(name)
+        self.moments[named_moment(name)] = None
+        return named_moment(name)
 
     def _name_element(self, site: Site, domain: f.Domain) -> str:
         name = self.names.setdefault(site, f"{self.prefixes[1]}{len(self.names) + 1}")
@@ -296,33 +297,33 @@ class Grounding:
         if (domain, element) not in self.facts:
             self.facts[domain, element] = None
             self._declare(f"|{fact}|", f"(declare-const |{fact}| Bool)")
-            for axiom in true_of_roads(self.facts):
+            for axiom in road_clauses(self.facts):
                 self._declare(f"(assert {axiom})", f"(assert {axiom})")
         return f"|{fact}|"
 
     # --- growing ---------------------------------------------------------------------------------
 
     def instantiate(self, universal: Universal, when: Moment) -> None:
-        """Demand what ``universal`` says at ``when``, under a switch of its own."""
+        """Add the instance of ``universal`` at ``when``, under a switch of its own."""
         universal.done.append(when)
         guards = " ".join([universal.switch, *universal.window.smt(when)])
         self._add_clause((universal.site, str(when)), f"(=> (and {guards}) {universal.body(when)})")
 
     def instantiate_road(self, universal: RoadUniversal, element: str) -> None:
-        """Demand what ``universal`` says of a lane or lanelet."""
+        """Add the instance of ``universal`` for a lane or lanelet."""
         universal.done.append(element)
         guards = f"{universal.switch} {self._fact(universal.domain, element)}"
         self._add_clause((universal.site, element), f"(=> (and {guards}) {universal.body(element)})")
 
     def add_lemma(self, literals: Sequence[tuple[str, bool]], when: Moment) -> None:
-        """Use a clause that holds at every instant, at one moment."""
+        """Add a clause that holds at every instant, at one moment."""
         clause = " ".join(
             self.atom(name, when) if positive else f"(not {self.atom(name, when)})"
             for name, positive in literals
         )
-        self._add_clause(Lemma(tuple(literals), (str(when),)), f"(or {clause})")
+        self._add_clause(StateLemma(tuple(literals), (str(when),)), f"(or {clause})")
 
-    def _add_clause(self, stands_for: tuple[Site, str] | Lemma, clause: str) -> None:
+    def _add_clause(self, stands_for: tuple[Site, str] | StateLemma, clause: str) -> None:
         switch = self._next_switch()
         self.switches[switch] = stands_for
         self.session.tell(f"(declare-const {switch} Bool)(assert (=> {switch} {clause}))")

@@ -1,7 +1,7 @@
-"""Small traces against a claim that repeat themselves, or have a state of their own after an instant.
+"""Searches small countermodels that end in a loop or change right after an instant.
 
-They are tried over the truth values that the claim's predicates can have together, a few instants long;
-the prover's models cannot be of this kind. What refutes is made into a trace of numbers and judged apart.
+They range over the truth values that the claim's predicates can have together, a few instants long;
+the prover's models cannot have this form. Refuting ones get numbers and are judged apart.
 """
 
 from collections.abc import Iterator, Sequence
@@ -36,8 +36,8 @@ Pair: TypeAlias = tuple[Valuation, Valuation]
 
 
 @dataclass(frozen=True)
-class _Shape:
-    """States at and after each instant, ``step`` seconds apart; from instant ``again`` on they repeat."""
+class _LassoShape:
+    """The truth values at and after each instant, ``step`` s apart; from instant ``again`` on they repeat."""
 
     states: tuple[Pair, ...]
     again: int
@@ -53,13 +53,13 @@ class _Shape:
         return Loop(start, len(self.states) * self.step - start)
 
     def truth(self, number: int) -> TruthSet:
-        """When one predicate is true, in the first round."""
+        """Return when one predicate is true in the first round."""
         pairs = zip(self.times, self.states, strict=True)
         return from_switches((time, at[number], after[number]) for time, (at, after) in pairs)
 
 
 def find_lasso(query: Query, goal: Formula, checker: StateChecker, meter: Budget) -> Countermodel | None:
-    """A trace on which the claim is judged false, or None where none was found, which says nothing.
+    """Return a trace on which the claim is judged false; None, which shows nothing, where none was found.
 
     ``goal``: a part of the claim, abstracted. None where it has more than three predicates, speaks of one
     instant only, or quantifies over lanes. Raises ``BudgetExceeded``.
@@ -76,61 +76,62 @@ def find_lasso(query: Query, goal: Formula, checker: StateChecker, meter: Budget
     atoms = {x.name: x for x in f.subformulas(goal) if isinstance(x, f.Application) and x.name in names}
     plain = {name: with_values(atom, checker.defaults) for name, atom in atoms.items()}
     try:
-        asked = without_empty_windows(with_values(goal, checker.defaults))
+        abstracted = without_empty_windows(with_values(goal, checker.defaults))
         placed = 0
-        for shape in _shapes(possible, _steps(asked)):
-            if meter.is_out() or placed == PLACED:
+        for shape in _shapes(possible, _steps(abstracted)):
+            if meter.is_exhausted() or placed == PLACED:
                 return None
             meter.spend(A_CANDIDATE)
             given: dict[Formula, TruthSet] = {plain[x]: shape.truth(k) for k, x in enumerate(names)}
-            if not judge_periodic(asked, given, shape.loop).at(Fraction(0)):
+            if not judge_periodic(abstracted, given, shape.loop).at(Fraction(0)):
                 placed += 1
-                found = _realised(query, checker, names, shape)
-                if found is not None:
-                    return found
+                countermodel = _realise(query, checker, names, shape)
+                if countermodel is not None:
+                    return countermodel
     except RoadproofError as error:
         if isinstance(error, BudgetExceeded):
             raise
     return None
 
 
-def _steps(asked: Formula) -> list[Fraction]:
-    """How far apart instants may be: a second, or what the intervals of the formula say."""
-    bounds = {x for window in intervals_of(asked) for x in bounds_of(window) if x}
+def _steps(formula: Formula) -> list[Fraction]:
+    """Return candidate distances of instants: a second, and bounds of the formula's intervals."""
+    bounds = {x for window in intervals_of(formula) for x in bounds_of(window) if x}
     return list(dict.fromkeys([Fraction(1), *sorted(bounds)[:2], *(x / 2 for x in sorted(bounds)[:1])]))
 
 
-def _shapes(possible: Sequence[Valuation], steps: Sequence[Fraction]) -> Iterator[_Shape]:
-    """First those that keep the state of an instant up to the next; the shorter, the earlier."""
+def _shapes(possible: Sequence[Valuation], steps: Sequence[Fraction]) -> Iterator[_LassoShape]:
+    """Yield shapes, shorter ones first, those without a change after an instant before others."""
     for step in steps:
-        yield from islice(_of_step(possible, step), CANDIDATES)
+        yield from islice(_shapes_of_step(possible, step), CANDIDATES)
 
 
-def _of_step(possible: Sequence[Valuation], step: Fraction) -> Iterator[_Shape]:
-    kept: list[Pair] = [(x, x) for x in possible]
+def _shapes_of_step(possible: Sequence[Valuation], step: Fraction) -> Iterator[_LassoShape]:
+    steady: list[Pair] = [(x, x) for x in possible]
     both: list[Pair] = [(x, y) for x in possible for y in possible]
-    for pairs, longest in ((kept, INSTANTS), (both, INSTANTS - 1)):
+    for pairs, longest in ((steady, INSTANTS), (both, INSTANTS - 1)):
         for count in range(1, longest + 1):
             for states in product(pairs, repeat=count):
                 for again in range(count):
-                    yield _Shape(states, again, step)
+                    yield _LassoShape(states, again, step)
 
 
-def _realised(
-    query: Query, checker: StateChecker, names: Sequence[str], shape: _Shape
+def _realise(
+    query: Query, checker: StateChecker, names: Sequence[str], shape: _LassoShape
 ) -> Countermodel | None:
-    """The shape in numbers, on a road, judged; None where that is not possible."""
+    """Return the shape as a judged countermodel on a road, or None."""
     moments = [x for pair in shape.states for x in pair]
-    wanted = [dict(zip(names, x, strict=True)) for x in moments]
+    truths = [dict(zip(names, x, strict=True)) for x in moments]
     halves = [k * shape.step / 2 for k in range(len(moments))]
-    signals = {time: checker.signals(x) for time, x in zip(halves, wanted, strict=True)}
+    signals = {time: checker.signals(x) for time, x in zip(halves, truths, strict=True)}
     lanes = {lane: f.Domain("lanes") for lane in query.lanes}
-    model = Model({}, dict(zip(halves, wanted, strict=True)), signals, lanes, {})
+    model = Model({}, dict(zip(halves, truths, strict=True)), signals, lanes, {})
 
     def traces(_: Sequence[Fraction], states: Sequence[Values]) -> Iterator[Trace]:
+        """Yield the one trace of the shape, with numbers from ``states``."""
         own = (x != y for x, y in shape.states)
-        found = zip(shape.times, states[::2], states[1::2], own, strict=True)
-        instants = (Instant(time, at, {}, after if differs else None) for time, at, after, differs in found)
+        rows = zip(shape.times, states[::2], states[1::2], own, strict=True)
+        instants = (Instant(time, at, {}, after if differs else None) for time, at, after, differs in rows)
         at, after = shape.states[-1]
         stays = at == after and shape.again == len(shape.states) - 1
         yield tuple(instants), "before", None if stays else shape.loop

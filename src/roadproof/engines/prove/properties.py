@@ -1,4 +1,4 @@
-"""The list of template properties, and claims that users bring."""
+"""The template properties P1 to P9, and claims from users' files."""
 
 import hashlib
 import re
@@ -8,8 +8,8 @@ from itertools import groupby
 from pathlib import Path
 
 from roadproof.errors import Position, UsageError
-from roadproof.library.motion import statement
-from roadproof.library.specification import read_specification, unknown
+from roadproof.library.assumption import claim_statement
+from roadproof.library.specification import read_specification, unknown_name
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict, claim_verdict
 
@@ -21,10 +21,10 @@ _INDEX = re.compile(r"\{i(?:\+(\d+))?\}")
 
 @dataclass(frozen=True)
 class Task:
-    """One claim in one set, with the verdict that is expected; ``scenario`` None: of no single one.
+    """A claim in a spec set with its expected verdict; ``scenario`` None: about no single scenario.
 
-    ``assuming``: what the claim is asked under, in words. ``of_all_values``: the verdict is expected for all
-    values of parameters together, and may be another at some.
+    ``assuming``: assumptions in words. ``of_all_values``: the verdict is expected for all values of
+    parameters together, and may differ at some.
     """
 
     id: str
@@ -43,12 +43,12 @@ class Task:
         if self.id == OWN:
             return name_of_claim(self.claim, self.set_name, self.assuming)
         middle = f"-scenario-{self.scenario:02}" if self.scenario is not None else ""
-        under = f"-at-{digest(statement(self.assuming, ''))}" if self.assuming else ""
+        under = f"-at-{digest(claim_statement(self.assuming, ''))}" if self.assuming else ""
         return f"{self.id}{'-' + self.part if self.part else ''}{middle}-{self.set_name}{under}"
 
     @property
-    def kin(self) -> tuple[str, int | str]:
-        """What is equal for claims whose proofs have steps in common: set, and scenario but for its road."""
+    def affinity(self) -> tuple[str, int | str]:
+        """The key of claims whose proofs share steps: set, and scenario up to its road sector."""
         if self.scenario is None:
             return self.set_name, self.claim
         return self.set_name, self.scenario % ROAD_SECTORS_APART
@@ -56,33 +56,35 @@ class Task:
 
 def name_of_claim(claim: str, set_name: str, assuming: Sequence[str] = ()) -> str:
     """A name for a claim in a set, under what is assumed, fit for a file: ``claim-3f0a9c71-base``."""
-    return f"{OWN}-{digest(statement(assuming, ' '.join(claim.split())))}-{set_name}"
+    return f"{OWN}-{digest(claim_statement(assuming, ' '.join(claim.split())))}-{set_name}"
 
 
-def digest(asked: str) -> str:
-    """Eight hexadecimal digits that stand for a text."""
-    return hashlib.sha256(asked.encode()).hexdigest()[:8]
+def digest(text: str) -> str:
+    """Return eight hexadecimal digits of the SHA-256 of a text."""
+    return hashlib.sha256(text.encode()).hexdigest()[:8]
 
 
 def template_properties() -> list[Task]:
-    """P1 to P9 and the negative controls, in order."""
+    """Return P1 to P9 and the negative controls, in order."""
     import tomllib
 
     text = Path(__file__).with_name("properties.toml").read_text("utf-8")
-    entries = (_Property(**entry) for said in tomllib.loads(text).values() for entry in said)
+    entries = (
+        _Property(**entry) for entries_of_one in tomllib.loads(text).values() for entry in entries_of_one
+    )
     tasks = [task for entry in entries for task in entry.tasks]
     headings = list(dict.fromkeys((task.id, task.title, task.set_name) for task in tasks))
     return sorted(tasks, key=lambda x: (headings.index((x.id, x.title, x.set_name)), x.scenario or 0))
 
 
 def find_label(claim: str, set_name: str) -> tuple[str, str, int | None] | None:
-    """Property, part and scenario of a claim in a set, where it is a template property."""
+    """Return property, part and scenario of a claim in a set; None if it is no template property."""
     task = find_task(claim, set_name)
     return None if task is None else (task.id, task.part, task.scenario)
 
 
 def find_task(claim: str, set_name: str) -> Task | None:
-    """The template property that says a claim in a set, None where there is none."""
+    """Return the template property that states a claim in a set, or None."""
     return _tasks_by_claim().get((" ".join(claim.split()), set_name))
 
 
@@ -93,7 +95,7 @@ def _tasks_by_claim() -> dict[tuple[str, str], Task]:
 
 @dataclass(frozen=True)
 class _Property:
-    """A claim of ``properties.toml`` in some sets; once for each of its ``scenarios``, where it has some."""
+    """An entry of ``properties.toml``: a claim in some sets, for each of its ``scenarios``, if any."""
 
     id: str
     title: str
@@ -106,6 +108,7 @@ class _Property:
 
     @property
     def tasks(self) -> Iterator[Task]:
+        """The claims of this entry, one for each set and scenario."""
         for set_name in self.sets:
             for number in _numbers(self.scenarios) if self.scenarios else [None]:
                 claim, expected = _at(self.claim, number), claim_verdict(self.expected)
@@ -118,27 +121,27 @@ class _Property:
 def _numbers(text: str) -> list[int | None]:
     numbers: list[int | None] = []
     for piece in text.split(","):
-        found = _RANGE.fullmatch(piece)
-        assert found is not None, f"bad range {piece!r} in properties.toml"
-        numbers += range(int(found[1]), int(found[2] or found[1]) + 1)
+        match = _RANGE.fullmatch(piece)
+        assert match is not None, f"bad range {piece!r} in properties.toml"
+        numbers += range(int(match[1]), int(match[2] or match[1]) + 1)
     return numbers
 
 
 def _at(claim: str, scenario: int | None) -> str:
-    return _INDEX.sub(lambda found: str((scenario or 0) + int(found[1] or 0)), claim)
+    return _INDEX.sub(lambda match: str((scenario or 0) + int(match[1] or 0)), claim)
 
 
 def choose(
     tasks: Sequence[Task], names: Sequence[str], set_name: str | None, numbers: Sequence[int] = ()
 ) -> list[Task]:
-    """The tasks of the named properties (all where none is named) in a set (in all where None).
+    """Select the tasks of the named properties (all if none is named) in a set (all if None).
 
-    ``numbers``: only those about these scenarios. Raises ``UsageError`` for a property that does not exist.
+    ``numbers``: only those about these scenarios. Raises ``UsageError`` for an unknown property.
     """
     known = {task.id for task in tasks}
     for name in names:
         if name not in known:
-            raise UsageError(unknown("property", name, known))
+            raise UsageError(unknown_name("property", name, known))
     return [
         task
         for task in tasks
@@ -157,7 +160,7 @@ class WrittenClaim:
 
 
 def read_claims(path: Path) -> list[WrittenClaim]:
-    """The claims of a file: paragraphs, without ``#`` comments. Raises ``InputError``."""
+    """Return the claims of a file: paragraphs, without ``#`` comments. Raises ``InputError``."""
     text = read_specification(path).text.replace("\r\n", "\n")
     numbered = [(k, line) for k, line in enumerate(text.split("\n"), 1) if not line.lstrip().startswith("#")]
     lines = [(k, line.partition("#")[0].rstrip()) for k, line in numbered]

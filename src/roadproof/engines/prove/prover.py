@@ -1,4 +1,4 @@
-"""One claim, one verdict: PROVED with a certificate, REFUTED with a judged countermodel, or UNKNOWN."""
+"""Decides one claim: PROVED with a certificate, REFUTED with a judged countermodel, or UNKNOWN."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -7,34 +7,36 @@ from dataclasses import field, replace
 from fractions import Fraction
 from functools import lru_cache
 
-from roadproof.engines.prove.claim_parts import conjuncts, other_readings, premise_of
+from roadproof.engines.prove.claim_parts import claim_conjuncts, other_readings, premise_of
 from roadproof.engines.prove.countermodel import realise, with_truths
-from roadproof.engines.prove.doubt import Doubt, Stop
 from roadproof.engines.prove.lasso import find_lasso
 from roadproof.engines.prove.roads import Roster, roster_for
-from roadproof.engines.prove.search import GaveUp, InstanceSearch, Model, Proof
-from roadproof.engines.prove.states import Learnt, StateChecker
-from roadproof.engines.solve.recall import ask
+from roadproof.engines.prove.search import InstanceSearch, Model, NoAnswer, Proof
+from roadproof.engines.prove.states import StateCache, StateChecker
+from roadproof.engines.prove.unknown import StopPoint
+from roadproof.engines.solve.recall import check_sat
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms, Reading
-from roadproof.evidence.certificate import Certificate, certify, goal_of
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.certify import certify, goal_of
 from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.derivation import derive_query, met_sites
-from roadproof.evidence.settled import Settled
-from roadproof.evidence.sites import Lemma, Site, prefix_form
+from roadproof.evidence.sites import Site, StateLemma, prefix_form
 from roadproof.evidence.times import ZERO
+from roadproof.evidence.verdict_with_evidence import VerdictWithEvidence
 from roadproof.library import motion
+from roadproof.library.assumption import NOTHING, Assumption, assumes_motion, limits_in
 from roadproof.library.bind import default_values
-from roadproof.library.specification import Query, Specification, is_within
+from roadproof.library.specification import Query, Specification, satisfies_bound
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.initial_conditions import pins
+from roadproof.logic.initial_conditions import forced_values
 from roadproof.logic.rewrite import with_values
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.reasons import NO_REASON, Reason, ReasonKind
 from roadproof.runtime.budget import Budget, Effort
-from roadproof.runtime.progress import begin
+from roadproof.runtime.progress import report_stage
 from roadproof.runtime.records import dataclass
-from roadproof.runtime.timing import now, since
+from roadproof.runtime.timing import now, seconds_since
 from roadproof.verdict import ClaimVerdict, Verdict
 
 # Ways to look, in turns: (ask for few instants, units of work). The last is given what is left.
@@ -53,20 +55,19 @@ OTHERWISE = 2.0  # for each other reading of what is a predicate
 
 
 @dataclass(frozen=True)
-class Result(Settled[ClaimVerdict]):
-    """A verdict over dense, unbounded time; ``reason`` says why where it is UNKNOWN or VACUOUS.
+class ProverResult(VerdictWithEvidence[ClaimVerdict]):
+    """A verdict over dense, unbounded time; ``reason`` explains UNKNOWN and VACUOUS.
 
-    ``work``: the units spent on the search. There is a ``certificate`` with PROVED and VACUOUS, and with
-    nothing else. Of an UNKNOWN ``stop`` says where the search stopped, and ``doubt`` its cause.
+    ``work``: the units spent on the search. Exactly PROVED and VACUOUS have a ``certificate``. UNKNOWN has
+    ``stop``, where the search stopped.
     """
 
     work: float = 0.0
     countermodel: Countermodel | None = None
-    stop: Stop | None = None
-    doubt: Doubt | None = None
+    stop: StopPoint | None = None
 
-    def called(self, label: str = "", scenario: int | None = None) -> "Result":
-        """The same, with what the claim is called in its certificate."""
+    def called(self, label: str = "", scenario: int | None = None) -> "ProverResult":
+        """Return the result with the claim's label and scenario in its certificate."""
         if self.certificate is None:
             return self
         return replace(self, certificate=replace(self.certificate, property=label, scenario=scenario))
@@ -76,138 +77,143 @@ def prove(
     specification: Specification,
     query: Query,
     effort: Effort | None = None,
-    assumed: motion.Assumption = motion.NOTHING,
-) -> Result:
+    assumed: Assumption = NOTHING,
+) -> ProverResult:
     """Decide whether ``query`` holds at time 0 on all traces, for all values of its parameters.
 
-    Parameters keep their declared bounds and are otherwise arbitrary, as are lengths and widths
-    above zero, roads, and signals as functions of time; a value that is ``assumed``, or that the claim's own
-    premise demands, is put in first. A proof counts only once its certificate, derived apart, has been
-    answered unsat. Where motion is ``assumed`` nothing is refuted: a trace that has it at finitely many
-    instants need be no motion. Raises ``BudgetExceeded``; ``InputError`` for forbidden assumptions.
+    Parameters keep their declared bounds and are otherwise arbitrary, as are lengths and widths above zero,
+    roads, and signals as functions of time. Values that ``assumed`` or the claim's premise fix are put in
+    first. A proof counts only once its certificate, derived separately, has been answered unsat. Where motion
+    is ``assumed`` nothing is refuted: a trace that has it at finitely many instants need be no motion.
+    Raises ``BudgetExceeded``; ``InputError`` for forbidden assumptions.
     """
-    begun, effort = now(), (effort or Effort()).running()
-    found = _prove(specification, query, effort, assumed)
-    brief = effort.of(min(OTHERWISE, effort.units))
+    started, effort = now(), (effort or Effort()).with_clock_started()
+    result = _prove(specification, query, effort, assumed)
+    brief = effort.with_units(min(OTHERWISE, effort.units))
     for reading in other_readings(query.formula):
-        if found.verdict is not Verdict.UNKNOWN or found.stop is Stop.CERTIFICATE:
+        if result.verdict is not Verdict.UNKNOWN or result.stop is StopPoint.CERTIFICATE:
             break
         again = _prove(specification, query, brief, assumed, reading)
-        found = replace(again if again.holds else found, work=found.work + again.work)
-    return replace(found, seconds=since(begun))
+        result = replace(again if again.holds else result, work=result.work + again.work)
+    return replace(result, seconds=seconds_since(started))
 
 
 def _prove(
     specification: Specification,
     query: Query,
     effort: Effort,
-    assumed: motion.Assumption,
+    assumed: Assumption,
     reading: Reading = "states",
-) -> Result:
-    """As ``prove``, in one reading; in others than the usual one only proofs count."""
-    begun = now()
+) -> ProverResult:
+    """Decide the claim under one choice of atoms; under other choices than the default only proofs count."""
+    started = now()
     meter = effort.meter()
-    here = motion.values_said(specification, assumed.said)
-    demanded = _demanded(specification, query, here)
+    here = motion.values_in(specification, assumed.texts)
+    demanded = _forced_values(specification, query, here)
     pinned = motion.value_texts(specification, demanded)
     values = {**here, **demanded}
-    states = _states(specification, values, None, reading)
+    states = _state_checker(specification, values, None, reading)
     premise, claim = goal_of(specification, query, assumed, states.atoms, pinned)
-    attempt = _Attempt(specification, query, states, meter, motion.is_moving(assumed.said))
+    attempt = _ProofAttempt(specification, query, states, meter, assumes_motion(assumed.texts))
 
-    def result(verdict: ClaimVerdict, reason: Reason = NO_REASON, sure: Certificate | None = None) -> Result:
-        spent, seconds = meter.spent, since(begun)
-        return Result(spent, verdict=verdict, reason=reason, certificate=sure, seconds=seconds)
+    def result(
+        verdict: ClaimVerdict, reason: Reason = NO_REASON, sure: Certificate | None = None
+    ) -> ProverResult:
+        """Return a result with the work and time spent so far."""
+        spent, seconds = meter.spent, seconds_since(started)
+        return ProverResult(spent, verdict=verdict, reason=reason, certificate=sure, seconds=seconds)
 
     proofs: list[Proof] = []
-    for goal in conjuncts(claim):
-        found = attempt.decide(f.implication(premise, goal))
-        if isinstance(found, Countermodel):
-            return replace(result(Verdict.REFUTED), countermodel=with_truths(found, states.atoms))
-        if isinstance(found, GaveUp):
-            return replace(result(Verdict.UNKNOWN, found.reason), stop=found.stop)
-        proofs.append(found)
+    for goal in claim_conjuncts(claim):
+        outcome = attempt.decide(f.implication(premise, goal))
+        if isinstance(outcome, Countermodel):
+            return replace(result(Verdict.REFUTED), countermodel=with_truths(outcome, states.atoms))
+        if isinstance(outcome, NoAnswer):
+            return replace(result(Verdict.UNKNOWN, outcome.reason), stop=outcome.stop)
+        proofs.append(outcome)
     fewer = attempt.needed(assumed, values, proofs)
     if fewer != assumed:
         again = _prove(specification, query, meter.effort(), fewer, reading)
         if again.verdict is Verdict.PROVED and attempt.never_holds(premise, f.TRUE):
-            again = replace(again, verdict=Verdict.VACUOUS, reason=Why.CONTRADICTION())
+            again = replace(again, verdict=Verdict.VACUOUS, reason=ReasonKind.CONTRADICTION())
         if again.holds:
-            return replace(again, seconds=since(begun), work=meter.spent + again.work)
+            return replace(again, seconds=seconds_since(started), work=meter.spent + again.work)
     try:
         certificate = attempt.certificate(assumed, pinned, proofs)
     except InputError as error:
-        return replace(result(Verdict.UNKNOWN, Why.NO_CERTIFICATE(error)), stop=Stop.CERTIFICATE)
+        return replace(result(Verdict.UNKNOWN, ReasonKind.NO_CERTIFICATE(error)), stop=StopPoint.CERTIFICATE)
     rejected = _rejection(certificate, proofs, meter)
     if rejected is not None:
-        return replace(result(*rejected), stop=Stop.CERTIFICATE if rejected[0] is Verdict.UNKNOWN else None)
+        return replace(
+            result(*rejected), stop=StopPoint.CERTIFICATE if rejected[0] is Verdict.UNKNOWN else None
+        )
     if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
-        return result(Verdict.VACUOUS, Why.CONTRADICTION(), certificate)
+        return result(Verdict.VACUOUS, ReasonKind.CONTRADICTION(), certificate)
     condition = premise_of(query, claim)
     if condition is not None and attempt.never_holds(premise, condition):
-        return result(Verdict.VACUOUS, Why.PREMISE(), certificate)
+        return result(Verdict.VACUOUS, ReasonKind.PREMISE(), certificate)
     return result(Verdict.PROVED, NO_REASON, certificate)
 
 
 def _rejection(
     certificate: Certificate, proofs: Sequence[Proof], meter: Budget
 ) -> tuple[ClaimVerdict, Reason] | None:
-    """The verdict and the reason where z3 does not confirm a query of the certificate; None where it does.
+    """Return verdict and reason where z3 does not confirm a query of the certificate; else None.
 
-    A query that the search for the ``proofs`` has put to z3 itself is not asked again.
+    Queries that the search for the ``proofs`` already put to z3 are not repeated.
     """
-    settled = frozenset[str]().union(*(proof.settled for proof in proofs))
+    confirmed = frozenset[str]().union(*(proof.unsat_queries for proof in proofs))
     for title, script in certificate.queries:
-        if script in settled:
+        if script in confirmed:
             continue
-        answer = ask(script, meter=meter.apart(max(1.0, meter.left())))
+        answer = check_sat(script, meter=meter.separate(max(1.0, meter.left())))
         if answer != "unsat":
-            why = Why.UNCONFIRMED(answer, title)
+            why = ReasonKind.UNCONFIRMED(answer, title)
             return (Verdict.UNKNOWN if answer == "unknown" else Verdict.CROSSCHECK_FAILED), why
     return None
 
 
 class ProofHeuristic:
-    """Whether claims that are much alike have proofs, found quickly: no certificate is made of them.
+    """A quick test for proofs of similar claims, without certificates.
 
-    What is learnt of states for one claim serves the next. Nobody may rest on the answer: it says for which
-    claim ``prove`` is worth the work.
+    Knowledge of states is shared between claims. The answer proves nothing: it tells for which claim
+    ``prove`` is worth the work.
     """
 
     def __init__(self, specification: Specification) -> None:
         self.specification = specification
-        self.learnt: dict[tuple[str, ...], Learnt] = {}
+        self.learnt: dict[tuple[str, ...], StateCache] = {}
 
     def has_proof(self, query: Query, effort: Effort) -> tuple[bool, float]:
-        """Whether ``query`` is proved, and the units of work that it took. Raises ``BudgetExceeded``."""
+        """Return whether ``query`` is proved, and the units of work it took. Raises ``BudgetExceeded``."""
         meter = effort.meter()
-        values = _demanded(self.specification, query, {})
+        values = _forced_values(self.specification, query, {})
         pinned = motion.value_texts(self.specification, values)
-        states = _states(self.specification, values, self.learnt.setdefault(pinned, Learnt()))
-        premise, claim = goal_of(self.specification, query, motion.NOTHING, states.atoms, pinned)
-        attempt = _Attempt(self.specification, query, states, meter, False)
-        goals = (f.implication(premise, goal) for goal in conjuncts(claim))
+        states = _state_checker(self.specification, values, self.learnt.setdefault(pinned, StateCache()))
+        premise, claim = goal_of(self.specification, query, NOTHING, states.atoms, pinned)
+        attempt = _ProofAttempt(self.specification, query, states, meter, False)
+        goals = (f.implication(premise, goal) for goal in claim_conjuncts(claim))
         return all(isinstance(attempt.decide(goal), Proof) for goal in goals), meter.spent
 
 
-def _states(
+def _state_checker(
     specification: Specification,
     values: Mapping[str, Fraction],
-    learnt: Learnt | None = None,
+    learnt: StateCache | None = None,
     reading: Reading = "states",
 ) -> StateChecker:
-    """Which states there are where parameters have ``values``, for a claim of its own atoms."""
+    """Return the checker of states for the atoms of one claim, with parameters at ``values``."""
     library = specification.library
     return StateChecker(Atoms(reading=reading), library.bounds, {**default_values(library), **values}, learnt)
 
 
-def _demanded(
+def _forced_values(
     specification: Specification, query: Query, here: Mapping[str, Fraction]
 ) -> dict[str, Fraction]:
-    """The values that the claim's own premise demands, as far as parameters may have them."""
+    """Return the values that the claim's own premise forces, as far as parameters may have them."""
     library = specification.library
-    found = pins(with_values(query.formula, here))
-    return {name: x for name, x in found.items() if is_within(library.bounds[name], x)}
+    forced = forced_values(with_values(query.formula, here))
+    return {name: x for name, x in forced.items() if satisfies_bound(library.bounds[name], x)}
 
 
 @lru_cache(maxsize=256)
@@ -217,9 +223,9 @@ def _is_quickly_proved(
     bounds: tuple[tuple[str, str], ...],
     defaults: tuple[tuple[str, Fraction], ...],
 ) -> bool:
-    """Whether ``goal``, of atoms, is proved quickly, its query derived apart, too.
+    """Return whether ``goal``, a formula of atoms, has a quick proof whose derived query is unsat, too.
 
-    Remembered, since many claims share a premise. It depends on the arguments alone: nothing is learnt from
+    Memoised, since many claims share a premise. It depends on the arguments alone: nothing is learnt from
     other claims.
     """
     atoms, names, budget = Atoms(), dict[Site, str](), Effort(VACUITY)
@@ -231,12 +237,12 @@ def _is_quickly_proved(
         return False
     met = met_sites(goal, atoms, proof.instances, names, states.bounds, lanes)
     query = derive_query(goal, atoms, *met, proof.lemmas, states.bounds, lanes)
-    return ask(query, meter=budget.meter()) == "unsat"
+    return check_sat(query, meter=budget.meter()) == "unsat"
 
 
 @dataclass(frozen=True)
-class _Attempt:
-    """``names``: what the elements and times are called that the proofs of all parts speak of."""
+class _ProofAttempt:
+    """One attempt to decide a claim; ``names``: the shared names of elements and times in all its proofs."""
 
     specification: Specification
     query: Query
@@ -247,16 +253,16 @@ class _Attempt:
 
     @property
     def refutes(self) -> bool:
-        """Whether a model is made into a trace."""
+        """Return whether a model is made into a trace."""
         return not self.moving and self.states.atoms.reading == "states"
 
-    def decide(self, goal: Formula) -> Proof | Countermodel | GaveUp:
+    def decide(self, goal: Formula) -> Proof | Countermodel | NoAnswer:
         """Look for a proof and for a countermodel in turns, until one is found or the work is used up."""
-        last = GaveUp(self.meter.reason())
+        last = NoAnswer(self.meter.reason())
         turns = TURNS[-1:] if f.is_state(goal) else TURNS
         roster = roster_for(goal, self.query.lanes) if self.refutes else None
-        for number, (wishful, units) in enumerate(turns, 1):
-            begin("prove", f"turn {number} of {len(turns)}")
+        for number, (prefer_known_times, units) in enumerate(turns, 1):
+            report_stage("prove", f"turn {number} of {len(turns)}")
             if roster is not None and number == len(turns[:2]):
                 few = self._run(self._search(goal, {}, True, roster), self.meter.part(ON_FEW_LANES))
                 if isinstance(few, Countermodel):
@@ -265,35 +271,39 @@ class _Attempt:
                 repeating = find_lasso(self.query, goal, self.states, self.meter.part(REPEATING))
                 if repeating is not None:
                     return repeating
-            found = self._run(self._search(goal, self.names, wishful), self.meter.part(units))
-            if not isinstance(found, GaveUp):
-                return found
-            last = found
-            if self.meter.is_out():
+            outcome = self._run(self._search(goal, self.names, prefer_known_times), self.meter.part(units))
+            if not isinstance(outcome, NoAnswer):
+                return outcome
+            last = outcome
+            if self.meter.is_exhausted():
                 break
         return last
 
-    def _run(self, search: InstanceSearch, meter: Budget) -> Proof | Countermodel | GaveUp:
-        """What one search finds, a model of it made into a trace and judged."""
+    def _run(self, search: InstanceSearch, meter: Budget) -> Proof | Countermodel | NoAnswer:
+        """Run one search; models are made into traces and judged."""
         with closing(search):
-            return self._found(search, meter)
+            return self._run_to_end(search, meter)
 
-    def _found(self, search: InstanceSearch, meter: Budget) -> Proof | Countermodel | GaveUp:
-        found = search.run(meter)
-        while not isinstance(found, Proof | GaveUp):
-            countermodel = self._realised(found) if self.refutes else None
+    def _run_to_end(self, search: InstanceSearch, meter: Budget) -> Proof | Countermodel | NoAnswer:
+        outcome = search.run(meter)
+        while not isinstance(outcome, Proof | NoAnswer):
+            countermodel = self._realised(outcome) if self.refutes else None
             if countermodel is not None:
                 return countermodel
             if not search.widen():
-                return GaveUp(Why.FACTS(), Stop.FACTS) if self.moving else GaveUp(Why.TRACES(), Stop.PLACE)
-            found = search.run(meter)
-        return found
+                return (
+                    NoAnswer(ReasonKind.FACTS(), StopPoint.FACTS)
+                    if self.moving
+                    else NoAnswer(ReasonKind.TRACES(), StopPoint.PLACE)
+                )
+            outcome = search.run(meter)
+        return outcome
 
-    def _realised(self, found: Model) -> Countermodel | None:
-        return realise(self.query, self.states, found)
+    def _realised(self, model: Model) -> Countermodel | None:
+        return realise(self.query, self.states, model)
 
     def never_holds(self, premise: Formula, condition: Formula) -> bool:
-        """Whether it is proved quickly that ``condition`` is false under ``premise``."""
+        """Return whether a quick proof shows that ``condition`` is false under ``premise``."""
         goal = f.implication(premise, f.negation(condition))
         states = self.states
         return _is_quickly_proved(
@@ -301,14 +311,16 @@ class _Attempt:
         )
 
     def _search(
-        self, goal: Formula, names: dict[Site, str], wishful: bool, roster: Roster | None = None
+        self, goal: Formula, names: dict[Site, str], prefer_known_times: bool, roster: Roster | None = None
     ) -> InstanceSearch:
-        return InstanceSearch(goal, self.states, self.query.lanes, names, wishful, roster, self.moving)
+        return InstanceSearch(
+            goal, self.states, self.query.lanes, names, prefer_known_times, roster, self.moving
+        )
 
     def certificate(
-        self, assumed: motion.Assumption, pinned: tuple[str, ...], proofs: Sequence[Proof]
+        self, assumed: Assumption, pinned: tuple[str, ...], proofs: Sequence[Proof]
     ) -> Certificate:
-        """The proofs of all parts as one certificate. Raises ``InputError`` where they do not fit."""
+        """Return the proofs of all parts as one certificate. Raises ``InputError`` where they do not fit."""
         lemmas: dict[tuple[tuple[str, bool], ...], tuple[str, ...]] = {}
         for proof in proofs:
             for lemma in proof.lemmas:
@@ -317,25 +329,25 @@ class _Attempt:
         atoms = Atoms(reading=self.states.atoms.reading)
         claim = f.implication(*goal_of(self.specification, self.query, assumed, atoms, pinned))
         met = self._met(claim, atoms, proofs)
-        made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
+        made = tuple(StateLemma(literals, moments) for literals, moments in lemmas.items())
         return certify(
             self.specification,
             self.query,
             met,
             made,
             assumed=assumed,
-            read_with=(pinned, self.states.atoms.reading),
+            pinned_and_reading=(pinned, self.states.atoms.reading),
         )
 
     def needed(
-        self, assumed: motion.Assumption, values: Mapping[str, Fraction], proofs: Sequence[Proof]
-    ) -> motion.Assumption:
-        """The same with those premises alone of which a proof has instances, and which the claim has not.
+        self, assumed: Assumption, values: Mapping[str, Fraction], proofs: Sequence[Proof]
+    ) -> Assumption:
+        """Return the assumption reduced to the premises that the proofs used and the claim lacks.
 
         Each premise is a universal that holds at time 0.
         """
-        if not assumed.axioms and not motion.limits_said(assumed.said):
-            return motion.Assumption(assumed.said)
+        if not assumed.axioms and not limits_in(assumed.texts):
+            return Assumption(assumed.texts)
         instances, atoms = _instances(proofs), Atoms(reading=self.states.atoms.reading)
         own, _ = self._met(atoms.abstract(with_values(self.query.formula, values)), atoms, proofs)
 
@@ -347,14 +359,12 @@ class _Attempt:
         home, query = self.specification, self.query
         axioms = tuple(x for x in assumed.axioms if is_used(motion.axiom_formula(home, query, x)))
         used = {x for x, made in motion.limit_formulas(home, query, assumed).items() if is_used(made)}
-        return motion.Assumption(
-            assumed.said, axioms, tuple(x for x in motion.limits_said(assumed.said) if x not in used)
-        )
+        return Assumption(assumed.texts, axioms, tuple(x for x in limits_in(assumed.texts) if x not in used))
 
     def _met(
         self, claim: Formula, atoms: Atoms, proofs: Sequence[Proof]
     ) -> tuple[dict[Site, tuple[str, ...]], dict[Site, str]]:
-        """The instances of proofs, and their names, that a derivation from the claim meets."""
+        """Return the instances of proofs, and their names, that a derivation from the claim reaches."""
         bounds = self.specification.library.bounds
         return met_sites(claim, atoms, _instances(proofs), self.names, bounds, self.query.lanes)
 

@@ -28,13 +28,13 @@ LANELETS_A_LANE = 2
 
 @dataclass(frozen=True)
 class Roster:
-    """``lanelets`` gives each lanelet its lane."""
+    """The few lanes of a small road and its lanelets; ``lanelets`` maps each lanelet to its lane."""
 
     lanes: tuple[str, ...]
     lanelets: Mapping[str, str]
 
     def members(self, domain: f.Domain) -> list[str]:
-        """The elements that are in ``domain``, or may be in it (a zone, lanes beside another)."""
+        """Return the elements that are, or (for zones and adjacent lanes) may be, in ``domain``."""
         match domain.kind:
             case "lanes":
                 return list(self.lanes)
@@ -51,7 +51,7 @@ class Roster:
 
 
 def roster_for(claim: Formula, lanes: Sequence[str]) -> Roster | None:
-    """A roster for an abstracted claim; None where it has no quantifier over the road that is no atom.
+    """Return a roster for an abstracted claim; None without a road quantifier outside of atoms.
 
     A free lanelet is in the last lane.
     """
@@ -69,7 +69,7 @@ def roster_for(claim: Formula, lanes: Sequence[str]) -> Roster | None:
 
 
 def open_quantifiers(formula: Formula) -> list[f.Some | f.Every]:
-    """The quantifiers over the road that are no part of an atom."""
+    """Return the quantifiers over the road outside of atoms."""
     return [x for x in f.subformulas(formula) if isinstance(x, f.Some | f.Every) and not is_atom(x)]
 
 
@@ -90,13 +90,12 @@ class Box:
 
 
 @dataclass(frozen=True)
-class Layout:
-    """What a road is to be like.
+class RoadLayout:
+    """The requirements on a road.
 
-    ``inside`` and ``outside`` tell of boxes that they are in a place, ``("lane", "L")``,
-    ``("zone", "main")`` or ``("lanelet", "l")``, or not. ``lanelets`` gives each lanelet that has a
-    name its lane and its possible zones; ``adjacent`` are pairs of lanes. ``short``: lanes have no
-    lanelets but those that they need.
+    ``inside`` and ``outside``: facts that a box is, or is not, in a place ``("lane", "L")``,
+    ``("zone", "main")`` or ``("lanelet", "l")``. ``lanelets`` gives each named lanelet its lane and possible
+    zones; ``adjacent`` are pairs of lanes. ``short``: lanes have no lanelets but those that they need.
     """
 
     boxes: tuple[Box, ...]
@@ -133,7 +132,7 @@ class Route:
     before: "Route | None"
 
     def steps(self) -> list[Step]:
-        """From the first on; strips of the same gap and zone as one step."""
+        """The lanelets from the first on; strips with equal gap and zone as one step."""
         backwards, route = [self.step], self.before
         while route is not None:
             step, after = route.step, backwards[-1]
@@ -146,8 +145,8 @@ class Route:
         return backwards[::-1]
 
 
-def lay_road(layout: Layout) -> Road | None:
-    """A road with the facts of ``layout``; every lane is a chain, and neighbours share a boundary."""
+def build_road(layout: RoadLayout) -> Road | None:
+    """Return a road with the facts of ``layout``, or None; lanes are chains of lanelets."""
     strips = _Strips(layout)
     beside = [lane for lane in layout.lanes if any(lane in pair for pair in layout.adjacent)]
     open_zones = frozenset(fact for fact in layout.inside if fact[0][0] == "zone")
@@ -170,7 +169,7 @@ def lay_road(layout: Layout) -> Road | None:
         for number, (lane, route) in enumerate(routes.items())
         for lanelet in strips.lanelets(lane, route, strips.inset(number, len(routes)))
     ]
-    lanelets += _tails(lanelets, beside, [(a, b) for a, b in map(sorted, layout.adjacent)])
+    lanelets += _neighbour_tails(lanelets, beside, [(a, b) for a, b in map(sorted, layout.adjacent)])
     placed = tuple(x for lane in routes for x in lanelets if x.lane == lane)
     return Road("made for this trace", placed, shared_boundaries(placed))
 
@@ -186,7 +185,7 @@ def _new_name(taken: Mapping[str, object]) -> str:
 class _Strips:
     """The strips of a layout, and the boxes in each."""
 
-    layout: Layout
+    layout: RoadLayout
     ends: list[Fraction] = field(init=False)
     lines: list[Fraction] = field(init=False)
     active: list[frozenset[int]] = field(init=False)
@@ -203,29 +202,29 @@ class _Strips:
         ]
 
     def route(self, lane: str, open_zones: frozenset[Fact], to_the_end: bool) -> Route | None:
-        """The best way of a lane: all that must be in it is, then most of ``open_zones``, then all strips."""
+        """Return the best route of a lane: with all it must have, most of ``open_zones``, then all strips."""
         layout = self.layout
         names = [name for name, (of, _) in layout.lanelets.items() if of == lane]
         must = {fact for fact in layout.inside if fact[0] == ("lane", lane)}
         must |= {(("lanelet", name), -1) for name in names}
-        wanted = frozenset(must) | open_zones
-        steps = [step for name in names for step in self._named_steps(lane, name, wanted)]
+        goals = frozenset(must) | open_zones
+        steps = [step for name in names for step in self._named_steps(lane, name, goals)]
         for zone in self._zones():
             for strip in range(len(self.active)):
-                steps += self._steps(strip, strip, lane, zone, "", wanted)
-        found: list[Route] = []
+                steps += self._steps(strip, strip, lane, zone, "", goals)
+        routes: list[Route] = []
         for whole in (False,) if layout.short else (True, False):
-            found = [
+            routes = [
                 route
                 for route in self._routes(steps, whole)
                 if must <= route.gains
                 and (not (whole or to_the_end) or route.step.last == len(self.active) - 1)
             ]
-            if any(open_zones <= route.gains for route in found):
+            if any(open_zones <= route.gains for route in routes):
                 break
         if layout.short:
-            return max(found, key=lambda route: (len(route.gains), -len(route.steps())), default=None)
-        return max(found, key=lambda route: len(route.gains), default=None)
+            return max(routes, key=lambda route: (len(route.gains), -len(route.steps())), default=None)
+        return max(routes, key=lambda route: len(route.gains), default=None)
 
     def _zones(self) -> list[Zone]:
         """The zones that the layout speaks of, and one that it does not, the main one first."""
@@ -233,8 +232,8 @@ class _Strips:
         others = [zone for zone in ZONES if zone not in known]
         return [zone for zone in ZONES if zone in known or zone in others[:1]]
 
-    def _named_steps(self, lane: str, name: str, wanted: frozenset[Fact]) -> Iterator[Step]:
-        """Ways for a lanelet with a name, each no longer than it must be."""
+    def _named_steps(self, lane: str, name: str, goals: frozenset[Fact]) -> Iterator[Step]:
+        """Yield ways for a named lanelet, each no longer than it must be."""
         place = ("lanelet", name)
         inside = {j for where, j in self.layout.inside if where == place}
         for zone in self.layout.lanelets[name][1]:
@@ -243,11 +242,11 @@ class _Strips:
                 for last in range(first, len(self.active)):
                     met |= self.active[last]
                     if inside <= met:
-                        yield from self._steps(first, last, lane, zone, name, wanted)
+                        yield from self._steps(first, last, lane, zone, name, goals)
                         break
 
     def _steps(
-        self, first: int, last: int, lane: str, zone: Zone, name: str, wanted: frozenset[Fact]
+        self, first: int, last: int, lane: str, zone: Zone, name: str, goals: frozenset[Fact]
     ) -> Iterator[Step]:
         """A step for each gap between the boxes that a lanelet of this lane, zone and name must not touch."""
         boxes, layout = self.layout.boxes, self.layout
@@ -260,7 +259,7 @@ class _Strips:
         for right, left in [*shut, (self.lines[-1], self.lines[-1])]:
             if begin < right:
                 hit = {j for j in met if boxes[j].right < right and begin < boxes[j].left}
-                gains = {(place, j) for place in places[:2] for j in hit} & wanted
+                gains = {(place, j) for place in places[:2] for j in hit} & goals
                 if not name:
                     yield Step(first, last, begin, right, zone, name, frozenset(gains))
                 elif all(j in hit for where, j in layout.inside if where == ("lanelet", name)):
@@ -322,10 +321,10 @@ class _Strips:
         return narrowest * (number + 1) / (8 * of)
 
 
-def _tails(
+def _neighbour_tails(
     lanelets: Sequence[Lanelet], lanes: Sequence[str], pairs: Sequence[tuple[str, str]]
 ) -> list[Lanelet]:
-    """Where lanes lie side by side: behind all else, one pair after the other.
+    """Return lanelets behind all else where adjacent lanes lie side by side, one pair after the other.
 
     Between such places each lane keeps to a level of its own.
     """

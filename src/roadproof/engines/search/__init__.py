@@ -1,4 +1,4 @@
-"""The search for drives: solve, round, replay, judge.
+"""The search for drives: solve, round to rationals, replay, judge.
 
 Imports encode, solve, prove and evidence.
 """

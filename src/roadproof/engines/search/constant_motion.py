@@ -1,4 +1,4 @@
-"""A state that refutes a claim about one instant, as a drive: every vehicle goes on as it moves there."""
+"""Turns a state that refutes a claim about one instant into a drive of constant accelerations."""
 
 from collections.abc import Mapping
 from fractions import Fraction
@@ -13,7 +13,7 @@ from roadproof.library.compose import negation
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.custom_names import kind_of
 from roadproof.logic.formula import is_state
-from roadproof.logic.initial_conditions import pins
+from roadproof.logic.initial_conditions import forced_values
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.signals import FIXED, SIGNALS, SIZES, STARTING
 
@@ -23,18 +23,18 @@ _JERK = "j_lon"
 def steady_drive(
     specification: Specification,
     claim: Query,
-    found: Countermodel,
+    countermodel: Countermodel,
     parameters: Mapping[str, Fraction] | None = None,
 ) -> JudgedDrive | None:
-    """The first state of ``found`` with constant accelerations, judged to refute ``claim``.
+    """Return the first state of ``countermodel`` with constant accelerations, judged to refute ``claim``.
 
-    None where the claim is about vehicles at more than one instant, says its numbers or signals itself, needs
-    jerk or other values of ``parameters`` (where None: than the declared ones and those that its premise
-    demands); and where the judge rejects the drive.
+    None where the claim is about vehicles at more than one instant, has numbers or custom signals of its own,
+    or needs jerk or other values than ``parameters`` (by default the declared ones and those that its
+    premise forces); and where the judge rejects the drive.
     """
     if claim.vehicles and not is_state(claim.formula):
         return None
-    values = found.instants[0].values
+    values = countermodel.instants[0].values
     known = {
         f"{name}({vehicle})" for vehicle in claim.vehicles for name in (*SIGNALS, *FIXED) if name != _JERK
     }
@@ -42,8 +42,8 @@ def steady_drive(
     if any(name not in known | jerks for name in values) or any(values.get(name, 0) for name in jerks):
         return None
     library = specification.library
-    wanted = values_with(library, pins(claim.formula)) if parameters is None else parameters
-    if any(wanted.get(name) != value for name, value in found.parameters.items()):
+    expected = values_with(library, forced_values(claim.formula)) if parameters is None else parameters
+    if any(expected.get(name) != value for name, value in countermodel.parameters.items()):
         return None
     refuted = negation(claim)
     drive = Drive({vehicle: _steady(vehicle, values) for vehicle in claim.vehicles})
@@ -54,9 +54,9 @@ def steady_drive(
         refuted.text,
         Fraction(0),
         lanes,
-        found.parameters,
+        countermodel.parameters,
         specification.options,
-        found.road or NOWHERE,
+        countermodel.road or NOWHERE,
         drive,
         overlaps_allowed=True,
     )
@@ -67,7 +67,7 @@ def steady_drive(
 
 
 def _steady(vehicle: str, values: Mapping[str, Fraction]) -> Motion:
-    """What its state does not say is 0, or of usual size."""
+    """Return a motion from a state; missing signals are 0 and missing sizes typical."""
 
     def of(name: str, usual: Fraction = Fraction(0)) -> Fraction:
         return values.get(f"{name}({vehicle})", usual)

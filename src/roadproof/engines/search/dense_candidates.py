@@ -1,8 +1,8 @@
-"""Drives that may falsify a bounded claim between its samples, each judged in dense and unbounded time.
+"""Tries to falsify a bounded claim between its samples, with drives judged in dense, unbounded time.
 
-A search on a grid reads a formula at samples. Before it says that no drive within its limits falsifies a
-claim, drives that keep these limits are judged: those that are given, sampled ones, and solutions of weaker
-problems: one part of the denied claim with its inequalities closed, or all of it read twice as often.
+A search on a grid reads a formula at samples. Before it answers that no drive within its limits falsifies
+a claim, drives within these limits are judged: given ones, sampled ones, and solutions of weaker problems,
+which close the inequalities of one part of the denied claim or read all of it twice as often.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -10,40 +10,42 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, permutations
 
-from roadproof.engines.encode.build import encode_formula, frame, surroundings
-from roadproof.engines.encode.motion import Layout, own_columns
+from roadproof.engines.encode.build import assemble_problem, encode_formula, road_constraints
+from roadproof.engines.encode.motion import ColumnLayout, custom_signal_ranges
 from roadproof.engines.encode.problem import (
     Circuit,
     ColumnInequality,
+    ColumnValues,
     Leaf,
+    LimitKind,
+    Origin,
     Problem,
     Row,
-    Solution,
     all_of,
     evaluate,
     replace_leaves,
     row_of,
 )
 from roadproof.engines.encode.unroll import Grid
-from roadproof.engines.search.ask import judge_found
-from roadproof.engines.search.enumeration import drive_within
-from roadproof.engines.search.outcome import Search
+from roadproof.engines.search.drive_search import as_judged_drive
+from roadproof.engines.search.enumeration import short_satisfying_drive
 from roadproof.engines.search.question import FoundDrive, SearchProblem, pose
 from roadproof.engines.search.shape import round_drive
+from roadproof.engines.setting import Search
 from roadproof.engines.solve.bounds import TooNonlinearError
 from roadproof.engines.solve.exact import solve_exactly
-from roadproof.engines.solve.milp import box_of, solve_mixed
+from roadproof.engines.solve.milp import column_box, solve_mixed
 from roadproof.errors import UsageError
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.logic.custom_names import own_of
+from roadproof.logic.custom_names import custom_signals_of
 from roadproof.logic.formula import Formula
-from roadproof.logic.initial_conditions import conjuncts
+from roadproof.logic.initial_conditions import top_level_conjuncts
 from roadproof.runtime.budget import Budget
-from roadproof.runtime.progress import begin
-from roadproof.semantics.exact.exact import judge
+from roadproof.runtime.progress import report_stage
+from roadproof.semantics.exact.judging import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.world.drive import Drive
-from roadproof.world.motion import starts_of, states_at
+from roadproof.world.motion import piece_starts, states_at
 from roadproof.world.polynomial import affine
 from roadproof.world.signals import STARTING, SignalName
 
@@ -53,36 +55,36 @@ MOST_PARTS = 8  # of a denied claim that are closed one at a time
 
 
 def falsifying_drive(search: Search, given: Iterable[Drive] = ()) -> JudgedDrive | None:
-    """A judged drive within the limits of ``search`` on which its formula holds, or None where none is known.
+    """Return a judged drive within the limits of ``search`` on which its formula holds, or None.
 
     ``given``: drives that are tried first, under every naming of their vehicles. Raises ``BudgetExceeded``,
     ``MissingSolverError``.
     """
     question = pose(search.specification.library, search.query, search.setting)
-    begin("judge", "drives within the limits, in dense time")
+    report_stage("judge", "drives within the limits, in dense time")
     clock = search.search_options.effort.meter()
-    has_own = bool(own_of([search.query.formula]))
+    has_own = bool(custom_signals_of([search.query.formula]))
     for drive in () if has_own else _cast(given, tuple(question.vehicles)):
         clock.seconds_left()
-        found = _judged(search, question, drive)
-        if found is not None:
-            return found
+        judged = _judged(search, question, drive)
+        if judged is not None:
+            return judged
     if not has_own:
-        sampled = drive_within(
+        sampled = short_satisfying_drive(
             search.specification, question, lambda drive: keeps_limits(question, drive), clock
         )
         if sampled is not None:
             return sampled
     meter = clock.part(WEAKER)
     for drive in _weaker_solutions(search, question, meter):
-        found = _judged(search, question, drive)
-        if found is not None:
-            return found
+        judged = _judged(search, question, drive)
+        if judged is not None:
+            return judged
     return None
 
 
 def keeps_limits(question: SearchProblem, drive: Drive) -> bool:
-    """Whether a drive is one of those of which a NONE-WITHIN of ``question`` speaks, whatever its pieces.
+    """Return whether a NONE-WITHIN of ``question`` excludes this drive, whatever its pieces.
 
     Sizes, speeds and accelerations are those of the vehicles; starts are within reach; nothing accelerates
     after the horizon; at the samples boxes are on the road and, unless collisions are allowed, apart.
@@ -91,7 +93,7 @@ def keeps_limits(question: SearchProblem, drive: Drive) -> bool:
         return False
     for name, model in question.vehicles.items():
         motion = drive.vehicles[name]
-        *_, last = starts_of(motion)
+        *_, last = piece_starts(motion)
         if (motion.length, motion.width, motion.kind) != (model.length, model.width, model.kind):
             return False
         if motion.has_jerk or last.time > question.grid.horizon or last.a_lon or last.a_lat:
@@ -109,9 +111,9 @@ def keeps_limits(question: SearchProblem, drive: Drive) -> bool:
 
 
 def _is_on_road(question: SearchProblem, drive: Drive) -> bool:
-    """Whether boxes are where they have to be at all samples, exactly."""
+    """Return whether boxes are where they have to be at all samples, exactly."""
     grid = question.grid
-    layout = Layout(tuple(question.vehicles), grid)
+    layout = ColumnLayout(tuple(question.vehicles), grid)
     times = [step * grid.dt for step in range(grid.steps + 1)]
     values: list[Fraction] = []
     for name in layout.vehicles:
@@ -122,14 +124,14 @@ def _is_on_road(question: SearchProblem, drive: Drive) -> bool:
         value = inequality.polynomial.value(lambda column: values[column])
         return value > 0 if inequality.strict else value >= 0
 
-    around = surroundings(question.road, question.vehicles, layout, question.assumptions.loosest())
+    around = road_constraints(question.road, question.vehicles, layout, question.assumptions.relaxed())
     return all(evaluate(part, holds) for part in around)
 
 
 def _cast(given: Iterable[Drive], names: tuple[str, ...]) -> Iterator[Drive]:
     """The drives with their vehicles called by ``names`` in every way, each naming once."""
     for drive in given:
-        if drive.own:
+        if drive.custom_signals:
             continue
         for chosen in permutations(drive.vehicles, len(names)):
             yield drive.cast(dict(zip(names, chosen, strict=True)))
@@ -140,8 +142,8 @@ def _judged(search: Search, question: SearchProblem, drive: Drive) -> JudgedDriv
     for lanes in question.lanes:
         formula = question.bound(lanes)
         if judge(formula, drive).holds and keeps_limits(question, drive):
-            found = FoundDrive(drive, lanes, formula, question.grid, question.assumptions)
-            return judge_found(search, question, found)
+            candidate = FoundDrive(drive, lanes, formula, question.grid, question.assumptions)
+            return as_judged_drive(search, question, candidate)
     return None
 
 
@@ -152,7 +154,7 @@ def _weaker_solutions(search: Search, question: SearchProblem, meter: Budget) ->
     """Drives that satisfy weaker problems than the formula on its grid, as found and with rounded speeds."""
     vehicles = question.vehicles
     for problem, layout in _weaker_problems(question):
-        if meter.is_out():
+        if meter.is_exhausted():
             return
         try:
             solution = _solve(search, problem, meter)
@@ -164,17 +166,17 @@ def _weaker_solutions(search: Search, question: SearchProblem, meter: Budget) ->
             yield round_drive(layout, vehicles, solution.values, grain)
 
 
-def _solve(search: Search, problem: Problem, meter: Budget) -> Solution:
+def _solve(search: Search, problem: Problem, meter: Budget) -> ColumnValues:
     options = search.search_options
     if options.engine == "smt":
         return solve_exactly(problem, meter.part(EACH))
-    return solve_mixed(problem, box_of(problem), solver=options.solver, meter=meter.part(EACH))
+    return solve_mixed(problem, column_box(problem), solver=options.solver, meter=meter.part(EACH))
 
 
-def _weaker_problems(question: SearchProblem) -> Iterator[tuple[Problem, Layout]]:
+def _weaker_problems(question: SearchProblem) -> Iterator[tuple[Problem, ColumnLayout]]:
     for lanes in question.lanes:
         formula = question.bound(lanes)
-        parts = tuple(conjuncts(formula))
+        parts = tuple(top_level_conjuncts(formula))
         choices: list[frozenset[Formula]] = [frozenset({part}) for part in parts[:MOST_PARTS]]
         for closed in dict.fromkeys([*choices, frozenset(parts)]):
             yield _problem(question, formula, question.grid, lambda x, c=closed: x in c)  # type: ignore[misc]
@@ -184,16 +186,16 @@ def _weaker_problems(question: SearchProblem) -> Iterator[tuple[Problem, Layout]
 
 def _problem(
     question: SearchProblem, formula: Formula, grid: Grid, is_closed: Callable[[Formula], bool]
-) -> tuple[Problem, Layout]:
+) -> tuple[Problem, ColumnLayout]:
     """The formula on a grid, those of its parts closed that ``is_closed`` chooses."""
     vehicles: Mapping[str, object] = question.vehicles
-    layout = Layout(tuple(vehicles), grid, own_columns(formula))
-    assumptions = replace(question.assumptions.plain(), starts=question.starts)
+    layout = ColumnLayout(tuple(vehicles), grid, custom_signal_ranges(formula))
+    assumptions = replace(question.assumptions.without_comfort(), starts=question.starts)
     circuits: list[Circuit[ColumnInequality]] = []
-    for part in conjuncts(formula):
+    for part in top_level_conjuncts(formula):
         circuit = encode_formula(part, question.vehicles, layout, assumptions)
         circuits.append(_closed(circuit) if is_closed(part) else circuit)
-    return frame(all_of(circuits), question.road, question.vehicles, layout, assumptions), layout
+    return assemble_problem(all_of(circuits), question.road, question.vehicles, layout, assumptions), layout
 
 
 def _closed(circuit: Circuit[ColumnInequality]) -> Circuit[ColumnInequality]:
@@ -201,12 +203,12 @@ def _closed(circuit: Circuit[ColumnInequality]) -> Circuit[ColumnInequality]:
     return replace_leaves(circuit, lambda x: Leaf(replace(x, strict=False, margin=Fraction(0))))
 
 
-def _steady_pairs(layout: Layout) -> Iterator[Row]:
-    """Of two steps after one another the accelerations are equal, as on the grid of twice the step."""
+def _steady_pairs(layout: ColumnLayout) -> Iterator[Row]:
+    """Yield rows that equate the accelerations of two successive steps, as on a grid of twice the step."""
     rates: tuple[SignalName, ...] = ("v_lon", "v_lat")
     for name in layout.vehicles:
         for signal in rates:
             for step in range(0, layout.grid.steps, 2):
                 before, between, after = (layout.column(name, signal, step + k) for k in range(3))
                 ends = [(before, Fraction(1)), (between, Fraction(-2)), (after, Fraction(1))]
-                yield row_of(affine(ends), Fraction(0), Fraction(0))
+                yield row_of(affine(ends), Fraction(0), Fraction(0), Origin(LimitKind.STEADY, step, (name,)))

@@ -1,6 +1,6 @@
-"""Short drives against a claim: sampled in great number, judged exactly where they look right.
+"""Samples many short drives against a claim and judges promising ones exactly.
 
-The monitor looks at all of them in floating point; the judge decides. The rows are the same in every run.
+The monitor ranks all of them in floating point; the judge decides. The rows are the same in every run.
 """
 
 from collections.abc import Callable, Iterator
@@ -12,22 +12,23 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from roadproof.engines.search.patterns import PIECES, Menu, Patterns, Shares, spread
-from roadproof.engines.search.question import SearchProblem, Setting, pose
+from roadproof.engines.search.question import SearchProblem, pose
+from roadproof.engines.setting import Setting
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.bind import telling_values
+from roadproof.library.bind import used_values
 from roadproof.library.compose import negation
 from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.custom_names import own_of
+from roadproof.logic.custom_names import custom_signals_of
 from roadproof.logic.formula import Formula
-from roadproof.logic.initial_conditions import conjuncts, pins
+from roadproof.logic.initial_conditions import forced_values, top_level_conjuncts
 from roadproof.logic.rewrite import bounds_of, intervals_of, leaves_of, terms_of, with_values
 from roadproof.runtime.budget import Budget
 from roadproof.runtime.records import dataclass
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.drive import Drive, Motion, Piece
@@ -46,62 +47,63 @@ CRUISING = tuple(map(Fraction, (15, 20, 24, 28, 32, 36)))
 TYPICAL_PLACES = tuple(map(Fraction, (0, 0, 6, -6, 10, -10, 20, -20, 40, -40, 70, -70, 110, -110)))
 
 
-def small_drive(
+def short_refuting_drive(
     specification: Specification,
     claim: Query,
     within: Within,
     rounds: int = 1,
     clock: Budget | None = None,
 ) -> JudgedDrive | None:
-    """A drive on which ``claim`` is false at time 0, judged; None where none was found, which says nothing.
+    """Return a judged drive on which ``claim`` is false at time 0; None, which shows nothing, if not found.
 
     ``within``: ``model`` keeps the limits of the usual models, ``forward`` and ``claim`` only those that the
-    claim says: in the first no vehicle reverses, in the second boxes may overlap, too. After the first of
-    ``rounds`` each looks
-    around the drives that came nearest. None too for claims about no vehicle, about own signals, or with
-    numbers that have no value. Raises ``BudgetExceeded`` where the seconds of the ``clock`` have passed.
+    claim states: in the first no vehicle reverses, in the second boxes may overlap, too. After the first of
+    ``rounds``, each samples around the drives that came nearest. None also for claims about no vehicle or
+    about custom signals, or with open numbers. Raises ``BudgetExceeded`` when the ``clock`` has run out.
     """
-    search = _search(specification, claim, within)
+    search = _short_drive_search(specification, claim, within)
     try:
         return None if search is None else replace(search, clock=clock).run(rounds)
     except (InputError, UsageError):
         return None
 
 
-def drive_within(
+def short_satisfying_drive(
     specification: Specification,
     question: SearchProblem,
     keeps: Callable[[Drive], bool],
     clock: Budget | None = None,
 ) -> JudgedDrive | None:
-    """A short drive on which the formula of ``question`` holds, judged; None where none was found.
+    """Return a judged short drive on which the formula of ``question`` holds, or None.
 
-    ``keeps``: whether a drive is one of those that are asked for; ``clock`` as in ``small_drive``.
+    ``keeps``: whether a drive qualifies; ``clock`` as in ``short_refuting_drive``.
     """
-    if not question.vehicles or own_of([question.query.formula]):
+    if not question.vehicles or custom_signals_of([question.query.formula]):
         return None
     bound = tuple(question.bound(lanes) for lanes in question.lanes)
     try:
-        return _Search(specification, question, bound, "model", keeps, clock).run(1)
+        return _ShortDriveSearch(specification, question, bound, "model", keeps, clock).run(1)
     except (InputError, UsageError):
         return None
 
 
-def _search(specification: Specification, claim: Query, within: Within) -> "_Search | None":
-    if not claim.vehicles or own_of([claim.formula]):
+def _short_drive_search(
+    specification: Specification, claim: Query, within: Within
+) -> "_ShortDriveSearch | None":
+    if not claim.vehicles or custom_signals_of([claim.formula]):
         return None
     against = negation(claim)
-    setting = Setting(values=pins(claim.formula), horizon=Fraction(9))
+    setting = Setting(values=forced_values(claim.formula), horizon=Fraction(9))
     try:
         question = pose(specification.library, against, setting)
         bound = [question.bound(lanes) for lanes in question.lanes]
     except (InputError, UsageError):
         return None
-    return _Search(specification, question, tuple(bound), within)
+    return _ShortDriveSearch(specification, question, tuple(bound), within)
 
 
 @dataclass(frozen=True)
-class _Search:
+class _ShortDriveSearch:
     specification: Specification
     question: SearchProblem
     formulas: tuple[Formula, ...]
@@ -110,7 +112,7 @@ class _Search:
     clock: Budget | None = None
 
     def run(self, rounds: int) -> JudgedDrive | None:
-        """Judge some drives unseen, then those that the monitor chooses, in rounds around the best so far."""
+        """Judge some drives blindly, then the monitor's choice, in rounds around the best so far."""
         patterns = self.patterns()
         grid = self.question.grid
         count = max(BLIND, min(ROWS, LOOKS // (grid.steps + 1)))
@@ -119,9 +121,9 @@ class _Search:
         if size <= LARGE:
             for row in rows[:BLIND]:
                 for number in range(len(self.formulas)):
-                    found = self._judged(patterns, row, number)
-                    if found is not None:
-                        return found
+                    judged = self._judged(patterns, row, number)
+                    if judged is not None:
+                        return judged
         monitor = compile(dict(enumerate(self.formulas)))
         for turn in range(1, rounds + 1):
             if self.clock is not None:
@@ -130,9 +132,9 @@ class _Search:
             answers = monitor.evaluate(batch, "clip").answers
             for number in range(len(self.formulas)):
                 for row in rows[answers[number].true][:JUDGED]:
-                    found = self._judged(patterns, row, number)
-                    if found is not None:
-                        return found
+                    judged = self._judged(patterns, row, number)
+                    if judged is not None:
+                        return judged
             if turn < rounds:
                 margins = monitor.measure(batch, "clip").margins
                 best = np.max([np.nan_to_num(x.low, nan=-np.inf) for x in margins.values()], axis=0)
@@ -140,7 +142,7 @@ class _Search:
         return None
 
     def patterns(self) -> Patterns:
-        """What short drives are made of."""
+        """Return the building blocks of short drives."""
         menus = {name: self._menu(name, model) for name, model in self.question.vehicles.items()}
         return Patterns(menus, self._durations())
 
@@ -160,7 +162,7 @@ class _Search:
             question.query.text,
             question.grid.horizon,
             question.lanes[number],
-            telling_values(specification.library, question.query.formula, question.values),
+            used_values(specification.library, question.query.formula, question.values),
             specification.options,
             question.road,
             drive,
@@ -192,10 +194,10 @@ class _Search:
         acceleration = self._range(name, "a_lon", (-HARD, HARD) if free else model.a_lon)
         slow, fast = speed
         usual = list(SPEEDS if free else CRUISING)
-        speeds = _inside([*usual, *self._numbers((1, -1))], speed) or (slow, fast)
+        speeds = _within_range([*usual, *self._numbers((1, -1))], speed) or (slow, fast)
         hard, fierce = acceleration
         mild = [Fraction(0), Fraction(0), Fraction(1), Fraction(-1), hard, fierce, hard / 2, fierce / 2]
-        accelerations = _inside([*mild, *self._numbers((1, -2))], acceleration) or (hard, fierce)
+        accelerations = _within_range([*mild, *self._numbers((1, -2))], acceleration) or (hard, fierce)
         still = hard <= 0 <= fierce
         last = (*(Fraction(0),) * 4 * still, *(accelerations if self.within == "claim" or not still else ()))
         last = last if self.keeps is None else (Fraction(0),)
@@ -220,7 +222,7 @@ class _Search:
     def _range(self, name: str, signal: t.SignalName, usual: Range) -> Range:
         """The values of a signal that the claim's own limits leave."""
         low, high = usual
-        for part in conjuncts(self.question.query.formula):
+        for part in top_level_conjuncts(self.question.query.formula):
             lasting = isinstance(part, f.Always) and part.interval == f.FOREVER
             inner = part.body if lasting and isinstance(part, f.Always) else f.TRUE
             if not isinstance(inner, f.Compare) or inner.left != t.Signal(signal, name):
@@ -241,15 +243,15 @@ class _Search:
 
         ``of``: a signal and a vehicle, where only what is compared with it is wanted.
         """
-        found: dict[Fraction, None] = {}
+        judged: dict[Fraction, None] = {}
         for part in f.subformulas(self._formula):
             if not isinstance(part, f.Compare) or (of and not _speaks_of(part, *of)):
                 continue
             for side in terms_of(part):
                 number = t.constant_value(side)
                 if number is not None and _measures(side, dimension):
-                    found |= dict.fromkeys((number, number - 1, number + 1))
-        return tuple(found)[:12]
+                    judged |= dict.fromkeys((number, number - 1, number + 1))
+        return tuple(judged)[:12]
 
     def _durations(self) -> tuple[Fraction, ...]:
         bounds = [x for interval in intervals_of(self._formula) for x in bounds_of(interval) if x]
@@ -269,13 +271,13 @@ def _measures(term: t.Term, dimension: t.Dimension) -> bool:
 
 
 def _forward(drive: Drive) -> Formula:
-    """No vehicle ever reverses."""
+    """Return the formula that no vehicle ever reverses."""
     standing = t.Number(Fraction(0), t.SIGNAL_DIMENSIONS["v_lon"])
     speeds = (f.Compare(t.Signal("v_lon", name), ">=", standing) for name in drive.vehicles)
     return f.Always(f.FOREVER, f.conjunction(*speeds))
 
 
-def _inside(values: list[Fraction], ends: Range) -> tuple[Fraction, ...]:
+def _within_range(values: list[Fraction], ends: Range) -> tuple[Fraction, ...]:
     return tuple(x for x in values if ends[0] <= x <= ends[1])
 
 
@@ -293,5 +295,5 @@ def _around(rows: Shares, count: int, turn: int) -> Shares:
     """Rows that each share about two thirds of their columns with one of ``rows``."""
     parents = np.resize(np.arange(len(rows)), count)
     fresh = spread(turn * ROWS, count, 2 * rows.shape[1])
-    kept = fresh[:, rows.shape[1] :] < 2 / 3
-    return np.where(kept, rows[parents], fresh[:, : rows.shape[1]])
+    inherited = fresh[:, rows.shape[1] :] < 2 / 3
+    return np.where(inherited, rows[parents], fresh[:, : rows.shape[1]])

@@ -1,8 +1,8 @@
-"""Starts for searches: conditions at time 0 that an engine can read, in place of parts that it cannot.
+"""Starts for searches: encodable conditions at time 0 in place of parts that an engine cannot encode.
 
-A part about one instant that has a comparison of degree above 2 is sampled. What it speaks of is set to the
-values of a state in which it holds, but for one place along the road, which is left free as far as the judge
-says that the part holds. So a start implies the parts; what is found from it is judged on all of the formula.
+A part about one instant with a comparison of degree above 2 is sampled. Its signals are set to a state in
+which it holds, except one place along the road, which stays free as far as the judge confirms the part.
+So a start implies the parts; what is found from it is judged on all of the formula.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -10,24 +10,24 @@ from fractions import Fraction
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from roadproof.engines.encode.along import Place, names_places
 from roadproof.engines.encode.build import inequality_at
 from roadproof.engines.encode.inequalities import inequalities_of, sizes_of
-from roadproof.engines.encode.motion import Layout
-from roadproof.engines.encode.place import span
-from roadproof.engines.encode.problem import Leaf, nodes
+from roadproof.engines.encode.motion import ColumnLayout
+from roadproof.engines.encode.place import road_edges
+from roadproof.engines.encode.problem import Leaf, Origin, nodes
+from roadproof.engines.encode.shift_invariance import Place, depends_on_place
 from roadproof.engines.search.initial_conditions import Condition, Start
 from roadproof.engines.search.question import SearchProblem
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.custom_names import own_of
+from roadproof.logic.custom_names import custom_signals_of
 from roadproof.logic.formula import Formula, boxes_overlap, is_state
-from roadproof.logic.initial_conditions import compared, conjuncts, demands
+from roadproof.logic.initial_conditions import comparisons_at_start, necessary_at_start, top_level_conjuncts
 from roadproof.logic.rewrite import signal_degree
-from roadproof.logic.terms import Own, Signal, Size
+from roadproof.logic.terms import CustomSignal, Signal, Size
 from roadproof.semantics.exact.algebraic import bounds
-from roadproof.semantics.exact.exact import judge
-from roadproof.semantics.exact.polynomial import Polynomial, polynomial
+from roadproof.semantics.exact.judging import judge
+from roadproof.semantics.exact.polynomial import TimePolynomial, polynomial
 from roadproof.semantics.exact.signals import LineSignals, unknown_at_instant
 from roadproof.semantics.exact.truth import Span
 from roadproof.world.signals import FIXED
@@ -41,74 +41,78 @@ _PLACES: tuple[Place, Place] = ("s", "d")
 GRAIN = Fraction(1, 100)  # m; how finely places are rounded (``rounding``)
 
 
-def unread(question: SearchProblem, lanes: Mapping[str, str]) -> tuple[Formula, ...]:
-    """Parts of the conjunction about time 0 that the engine milp cannot read; without own signals."""
-    reads = _reader(question)
-    found = []
-    for part in conjuncts(question.bound(lanes)):
-        if not is_state(part) or own_of([part]):
+def not_encodable(question: SearchProblem, lanes: Mapping[str, str]) -> tuple[Formula, ...]:
+    """Return parts about time 0 that the engine milp cannot encode, except those with custom signals."""
+    reads = _encodability_test(question)
+    unreadable = []
+    for part in top_level_conjuncts(question.bound(lanes)):
+        if not is_state(part) or custom_signals_of([part]):
             continue
         if not all(reads(x) for x in f.subformulas(part) if isinstance(x, f.Compare)):
-            found.append(part)
-    return tuple(dict.fromkeys(found))
+            unreadable.append(part)
+    return tuple(dict.fromkeys(unreadable))
 
 
-def closed(question: SearchProblem, lanes: Mapping[str, str]) -> frozenset[f.Compare]:
-    """What it cannot read of time 0 in other parts, which say it beside what they say of later times."""
-    reads = _reader(question)
-    others = (part for part in conjuncts(question.bound(lanes)) if not is_state(part))
-    found = {x for part in others for x in compared(part) if not own_of([x])}
-    return frozenset(x for x in found if not reads(x))
+def not_encodable_comparisons(question: SearchProblem, lanes: Mapping[str, str]) -> frozenset[f.Compare]:
+    """Return comparisons at time 0 that milp cannot encode, in parts that also speak of later times."""
+    reads = _encodability_test(question)
+    others = (part for part in top_level_conjuncts(question.bound(lanes)) if not is_state(part))
+    comparisons = {x for part in others for x in comparisons_at_start(part) if not custom_signals_of([x])}
+    return frozenset(x for x in comparisons if not reads(x))
 
 
-def _reader(question: SearchProblem) -> Callable[[f.Compare], bool]:
-    """Whether the engine milp reads a comparison about time 0."""
-    layout = Layout(tuple(question.vehicles), question.grid)
+def _encodability_test(question: SearchProblem) -> Callable[[f.Compare], bool]:
+    """Return a test whether the engine milp can encode a comparison at time 0."""
+    layout = ColumnLayout(tuple(question.vehicles), question.grid)
     sizes = sizes_of(question.vehicles)
 
     def reads(part: f.Compare) -> bool:
+        """Return whether both sides, or all their polynomials, have degree 2 at most."""
         degrees = signal_degree(part.left), signal_degree(part.right)
         if all(degree is not None and degree <= READABLE for degree in degrees):
             return True
         leaves = (x.content for x in nodes(inequalities_of(part, sizes)) if isinstance(x, Leaf))
-        return all(inequality_at(x, layout, 0).polynomial.degree <= READABLE for x in leaves)
+        return all(inequality_at(x, layout, Origin(part, 0)).polynomial.degree <= READABLE for x in leaves)
 
     return reads
 
 
-def is_read(question: SearchProblem) -> bool:
-    """Whether the engine milp can read all that is said of time 0."""
-    return not any(unread(question, lanes) or closed(question, lanes) for lanes in question.lanes)
+def is_encodable(question: SearchProblem) -> bool:
+    """Return whether the engine milp can encode all conditions at time 0."""
+    return not any(
+        not_encodable(question, lanes) or not_encodable_comparisons(question, lanes)
+        for lanes in question.lanes
+    )
 
 
-def starts(
+def sampled_starts(
     question: SearchProblem, lanes: Mapping[str, str], parts: tuple[Formula, ...], most: int
 ) -> Iterator[Start]:
-    """At most ``most`` starts in place of ``parts`` (``unread``), unlike each other; ``closed`` is let go.
+    """Yield at most ``most`` starts, unlike each other, that imply ``parts`` (from ``not_encodable``).
 
-    None where no state is found; where there are no parts, one without conditions.
+    Nothing where no state is found; without parts, one start without conditions.
     """
-    let_go = closed(question, lanes)
+    let_go = not_encodable_comparisons(question, lanes)
     if not parts:
         yield Start(lanes, (), frozenset(), let_go)
         return
     from roadproof.engines.search.sampling import signals_in, states  # here: few questions need numpy for it
 
     together = f.conjunction(*parts)
-    formula = f.conjunction(demands(question.bound(lanes)), *_surroundings(question))
+    formula = f.conjunction(necessary_at_start(question.bound(lanes)), *_start_limits(question))
     space = space_of(question)
     spoken = [x for x in space.ranges if x in set(signals_in(together))]
-    beside = _beside(together, spoken, question)
+    beside = _relative_places(together, spoken, question)
     for state in states(formula, space, most):
-        found = conditions(together, state, spoken, beside, space)
-        yield Start(lanes, found, frozenset(parts), let_go)
+        chosen = start_conditions(together, state, spoken, beside, space)
+        yield Start(lanes, chosen, frozenset(parts), let_go)
 
 
 def space_of(question: SearchProblem) -> "Space":
-    """Where vehicles can be at time 0, and how fast, within their limits."""
+    """Return the ranges of places and speeds of vehicles at time 0, within their limits."""
     from roadproof.engines.search.sampling import Space
 
-    right, left = span(question.road)
+    right, left = road_edges(question.road)
     inside = question.assumptions.inside
     reach = question.assumptions.reach
     ranges: dict[Signal, Range] = {}
@@ -137,8 +141,8 @@ def sizes_in(question: SearchProblem) -> dict[Size, Fraction]:
     return {Size(name, v): known[v, name] for v in question.vehicles for name in FIXED if (v, name) in known}
 
 
-def _surroundings(question: SearchProblem) -> Iterator[Formula]:
-    """What every drive of a search keeps at its start, beside ranges."""
+def _start_limits(question: SearchProblem) -> Iterator[Formula]:
+    """Yield the relations between signals that every drive of a search satisfies at its start."""
     inside = t.number(question.assumptions.inside, (1, -1))
     for name, vehicle in question.vehicles.items():
         fastest = t.subtract(t.Product((t.number(vehicle.lateral_share), Signal("v_lon", name))), inside)
@@ -156,53 +160,57 @@ def _surroundings(question: SearchProblem) -> Iterator[Formula]:
 # --- a state becomes conditions ----------------------------------------------------------------
 
 
-def conditions(
+def start_conditions(
     parts: Formula, state: "State", spoken: Sequence[Signal], beside: Mapping[Signal, Signal], space: "Space"
 ) -> tuple[Condition, ...]:
-    """What implies ``parts``, which hold in ``state``: values of what is spoken of, a place in a range.
+    """Return conditions that imply ``parts``, which hold in ``state``: signal values, one place as a range.
 
-    ``beside``: places that are said relative to that of another vehicle.
+    ``beside``: signals given relative to that of another vehicle.
     """
     others = set(beside.values())
     ranges = {x: (state[x], state[x]) for x in spoken if x.name != "j_lon" and x not in others}
-    free = [(_free(parts, x, state, space), x) for x in ranges if x.name == "s"]
+    free = [(_free_range(parts, x, state, space), x) for x in ranges if x.name == "s"]
     if free:
         widest, signal = max(free, key=lambda x: x[0][1] - x[0][0])
         ranges[signal] = widest
-    found = []
+    made = []
     for signal, (low, high) in ranges.items():
         shift = state[beside[signal]] if signal in beside else Fraction(0)
-        found.append(Condition(signal, beside.get(signal), low - shift, high - shift))
-    return tuple(found)
+        made.append(Condition(signal, beside.get(signal), low - shift, high - shift))
+    return tuple(made)
 
 
-def _beside(parts: Formula, spoken: Sequence[Signal], question: SearchProblem) -> dict[Signal, Signal]:
-    """Places relative to that of the first vehicle, where ``parts`` do not change when all are moved."""
+def _relative_places(
+    parts: Formula, spoken: Sequence[Signal], question: SearchProblem
+) -> dict[Signal, Signal]:
+    """Return places given relative to the first vehicle, where moving all leaves ``parts`` unchanged."""
     beside: dict[Signal, Signal] = {}
     for name in _PLACES:
         same = [x for x in spoken if x.name == name]
-        if len(same) > 1 and not names_places(parts, question.vehicles, name):
+        if len(same) > 1 and not depends_on_place(parts, question.vehicles, name):
             beside |= dict.fromkeys(same[1:], same[0])
     return beside
 
 
-def _free(parts: Formula, signal: Signal, state: "State", space: "Space") -> Range:
-    """Around its value in ``state``, where the signal may be with the others as they are: ends on a grid."""
+def _free_range(parts: Formula, signal: Signal, state: "State", space: "Space") -> Range:
+    """Return the range around its value in ``state`` that a signal may have; ends lie on a grid."""
     low, high = space.ranges[signal]
     value = state[signal]
-    courses: dict[Signal | Own, Polynomial] = {x: polynomial(known) for x, known in state.items()}
+    courses: dict[Signal | CustomSignal, TimePolynomial] = {
+        x: polynomial(known) for x, known in state.items()
+    }
     courses[signal] = polynomial(low, Fraction(1))
     truth = judge(parts, LineSignals(courses, space.sizes, unknown_at_instant)).truth(parts)
-    span = next((x for x in truth.spans() if _has(x, value - low)), None)
-    if span is None:
+    road_edges = next((x for x in truth.spans() if _has(x, value - low)), None)
+    if road_edges is None:
         return value, value
-    begin = low + bounds(span.begin.point, GRAIN / 10)[1]
-    end = high if span.end is None else min(high, low + bounds(span.end.point, GRAIN / 10)[0])
+    begin = low + bounds(road_edges.begin.point, GRAIN / 10)[1]
+    end = high if road_edges.end is None else min(high, low + bounds(road_edges.end.point, GRAIN / 10)[0])
     inner = (begin // GRAIN + 2) * GRAIN, (end // GRAIN - 1) * GRAIN
     return inner if inner[0] <= value <= inner[1] else (value, value)
 
 
-def _has(span: Span, place: Fraction) -> bool:
-    begin, end = span
+def _has(road_edges: Span, place: Fraction) -> bool:
+    begin, end = road_edges
     after = begin.point < place or (begin.point == place and not begin.after)
     return after and (end is None or place < end.point or (place == end.point and end.after))

@@ -1,13 +1,22 @@
-"""Conditions on a drive beside the formula: how it begins, and how it differs from drives found before."""
+"""Conditions on a drive beside the formula: its start, and its difference from earlier drives."""
 
 from collections.abc import Mapping
 from fractions import Fraction
 
-from roadproof.engines.encode.motion import Layout
-from roadproof.engines.encode.problem import Circuit, ColumnInequality, Inequality, Leaf, all_of, any_of
+from roadproof.engines.encode.motion import ColumnLayout
+from roadproof.engines.encode.problem import (
+    Circuit,
+    ColumnInequality,
+    Inequality,
+    Leaf,
+    LimitKind,
+    Origin,
+    all_of,
+    any_of,
+)
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.initial_conditions import conjuncts, narrowed
+from roadproof.logic.initial_conditions import top_level_conjuncts, without_comparisons
 from roadproof.logic.terms import Signal
 from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Drive
@@ -18,7 +27,7 @@ from roadproof.world.signals import SignalName
 
 @dataclass(frozen=True)
 class Condition:
-    """At time 0 a signal of ``vehicle`` is in a range (SI), which is relative to that of ``beside``."""
+    """A range (SI) for a signal of a vehicle at time 0, absolute or relative to another vehicle's signal."""
 
     signal: Signal
     beside: Signal | None
@@ -28,9 +37,9 @@ class Condition:
 
 @dataclass(frozen=True)
 class Start:
-    """``conditions`` that imply ``replaced``, parts of a bound formula, under an assignment of ``lanes``.
+    """Conditions at time 0 that imply ``replaced``, parts of a bound formula, for an assignment of ``lanes``.
 
-    ``closed``: comparisons of other parts that are left to be false, or true under a negation.
+    ``closed``: comparisons of other parts that are set to false (to true under a negation).
     """
 
     lanes: Mapping[str, str]
@@ -44,33 +53,36 @@ class Start:
         return {x.signal: x for x in self.conditions if x.low == x.high}
 
     def without(self, formula: Formula) -> Formula:
-        """The parts of ``formula`` that are left to be asked for; with the conditions they imply it."""
-        left = (part for part in conjuncts(formula) if part not in self.replaced)
-        return f.conjunction(*(narrowed(part, self.closed) if self.closed else part for part in left))
+        """Return the parts of ``formula`` that remain; together with the conditions they imply it."""
+        left = (part for part in top_level_conjuncts(formula) if part not in self.replaced)
+        return f.conjunction(
+            *(without_comparisons(part, self.closed) if self.closed else part for part in left)
+        )
 
 
-def encode_start(start: Start, layout: Layout) -> Circuit[ColumnInequality]:
-    """The conditions about the first sample of a grid."""
+def encode_start(start: Start, layout: ColumnLayout) -> Circuit[ColumnInequality]:
+    """Return the conditions as constraints on the first sample."""
 
     def now(signal: Signal) -> Polynomial[int]:
         return layout.state(signal.vehicle, signal.name, 0)
 
-    found = []
+    inequalities = []
     for x in start.conditions:
         value = now(x.signal)
         if x.beside is not None:
             value = value + now(x.beside).scaled(Fraction(-1))
-        found.append(Leaf(Inequality(value + constant(-x.low), False)))
-        found.append(Leaf(Inequality(value.scaled(Fraction(-1)) + constant(x.high), False)))
-    return all_of(found)
+        origin = Origin(LimitKind.START, 0, (x.signal.vehicle,))
+        for bounded in (value + constant(-x.low), value.scaled(Fraction(-1)) + constant(x.high)):
+            inequalities.append(Leaf(Inequality(bounded, False, origin=origin)))
+    return all_of(inequalities)
 
 
 # How far a signal at the start or the end has to be from that of another drive, in m and m/s.
 CLEARLY: Mapping[SignalName, Fraction] = {"s": Fraction(15), "d": Fraction(5, 2), "v_lon": Fraction(4)}
 
 
-def differ(layout: Layout, other: Drive) -> Circuit[ColumnInequality]:
-    """At the start or the end, a vehicle is in another lane, elsewhere along it, or at another speed."""
+def differs_from(layout: ColumnLayout, other: Drive) -> Circuit[ColumnInequality]:
+    """Return the constraint that a vehicle starts or ends clearly apart from ``other``, in place or speed."""
     choices: list[Circuit[ColumnInequality]] = []
     for name in layout.vehicles:
         for step in (0, layout.grid.steps):
@@ -78,6 +90,8 @@ def differ(layout: Layout, other: Drive) -> Circuit[ColumnInequality]:
             for signal, distance in CLEARLY.items():
                 value: Fraction = getattr(state, signal)
                 now = layout.state(name, signal, step)
-                choices.append(Leaf(Inequality(now + constant(-value - distance), False)))
-                choices.append(Leaf(Inequality(now.scaled(Fraction(-1)) + constant(value - distance), False)))
+                origin = Origin(LimitKind.OTHER_DRIVE, step, (name,))
+                above, below = now + constant(-value), now.scaled(Fraction(-1)) + constant(value)
+                for side in (above, below):
+                    choices.append(Leaf(Inequality(side + constant(-distance), False, origin=origin)))
     return any_of(choices)

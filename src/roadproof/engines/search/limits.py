@@ -1,6 +1,7 @@
-"""Within what a NONE-WITHIN says that there is none: every restriction of the search, as data and as text.
+"""The limits of a NONE-WITHIN verdict: every restriction of the search, as data and as text.
 
-What is no restriction, because one drive stands for others (``encode.along``), is not named here.
+Choices that lose no generality, because one drive stands for others (``encode.shift_invariance``), are
+not listed here.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,15 +21,15 @@ PROVE_OPTIONS = ("--horizon", "--dt", "--road")
 
 
 @dataclass(frozen=True)
-class Limits:
-    """Of which drives it is said that none satisfies a formula.
+class SearchLimits:
+    """The set of drives that a NONE-WITHIN verdict excludes.
 
-    Their accelerations are constant between the samples of ``grid`` and none after the last; the formula
+    Their accelerations are constant between the samples of ``grid`` and 0 after the last; the formula
     is read at the samples, of which the last stands for all later time. At the samples boxes are on
     ``road`` and, unless ``collisions``, apart. ``vehicles``: model by vehicle; ``lanes``: free lanes that
-    stand for one lane only; ``values``: parameters (SI); ``reach``: how far apart vehicles start (m);
-    ``starts``: where fronts are at time 0 (m), None where it makes no difference. ``own``: own signals,
-    which keep their values between samples, and their ranges. ``jerk``: whether the formula speaks of it.
+    stand for one lane only; ``values``: parameters (SI); ``reach``: largest distance of two starts (m);
+    ``starts``: range of the fronts at time 0 (m), None where it makes no difference. ``custom_signals``: the
+    ranges of signals that are constant between samples. ``jerk``: whether the formula has jerk.
     """
 
     road: str
@@ -40,7 +41,7 @@ class Limits:
     starts: Range | None
     collisions: bool
     shown: tuple[str, ...] = ()
-    own: Mapping[str, str] = field(default_factory=dict)
+    custom_signals: Mapping[str, str] = field(default_factory=dict)
     jerk: bool = False
 
     def text(self, options: Sequence[str] = SEARCH_OPTIONS) -> str:
@@ -62,9 +63,9 @@ class Limits:
             parts.append(f"starts between s={low} and s={high}")
         if self.values:
             parts.append(f"parameters {_listed({k: f'{float(v):g}' for k, v in self.values.items()})}")
-        if self.own:
-            listed = ", ".join(f"{name} in {held}" for name, held in self.own.items())
-            parts.append(f"own signals constant between samples, {listed}")
+        if self.custom_signals:
+            listed = ", ".join(f"{name} in {bounds}" for name, bounds in self.custom_signals.items())
+            parts.append(f"custom signals constant between samples, {listed}")
         shown = f" ({', '.join(self.shown)})" if self.shown else ""
         hint = f"; widen with {', '.join(options)}" if options else ""
         return f"{', '.join(parts)}{hint}{shown}"
@@ -72,7 +73,7 @@ class Limits:
     def as_json(self) -> JsonObject:
         """The limits as plain data; rationals as text."""
         return write(
-            shared.Limits(
+            shared.LimitsData(
                 road=self.road,
                 dt=self.grid.dt,
                 horizon=self.grid.horizon,
@@ -85,7 +86,7 @@ class Limits:
                 reach=self.reach,
                 starts=self.starts,
                 shown=self.shown,
-                signals=self.own or None,
+                signals=self.custom_signals or None,
             )
         )
 

@@ -1,4 +1,4 @@
-"""A drive made simpler as long as what is said of it stays true."""
+"""Simplifies a drive as long as it still satisfies its query."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -7,11 +7,11 @@ from fractions import Fraction
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.bind import bind, values_with
 from roadproof.library.specification import Library, Query
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.world.drive import Motion, Piece
 from roadproof.world.models import load_vehicle
-from roadproof.world.motion import starts_of
+from roadproof.world.motion import piece_starts
 from roadproof.world.road import Road
 
 ZERO = Fraction(0)
@@ -29,6 +29,7 @@ def simplest(file: DriveFile, query: Query, library: Library) -> DriveFile:
     formula = bind(query.formula, file.road, file.lanes, values_with(library, file.values))
 
     def good(name: str, motion: Motion) -> bool:
+        """Return whether a drive still satisfies the query."""
         drive = replace(file.drive, vehicles={**current, name: motion})
         if not _stays(motion, file.road) or first_breach(
             drive, dict.fromkeys(current, limits), None, file.road.line
@@ -39,18 +40,20 @@ def simplest(file: DriveFile, query: Query, library: Library) -> DriveFile:
 
     for name in current:
         for change in (_steady_across, _steady_along, *_ROUNDER):
-            current[name] = _kept(current[name], change(current[name]), name, good)
+            current[name] = _changed_if_good(current[name], change(current[name]), name, good)
         for shorter in (_without_acceleration, _with_mean):
             place = 0
             while place < len(current[name].pieces) - 1:
                 before = current[name]
-                current[name] = _kept(before, shorter(before, place), name, good)
+                current[name] = _changed_if_good(before, shorter(before, place), name, good)
                 place += len(current[name].pieces) == len(before.pieces)
     simple = {name: _merged(motion) for name, motion in current.items()}
     return replace(file, drive=replace(file.drive, vehicles=simple))
 
 
-def _kept(motion: Motion, change: Motion, name: str, good: Callable[[str, Motion], bool]) -> Motion:
+def _changed_if_good(
+    motion: Motion, change: Motion, name: str, good: Callable[[str, Motion], bool]
+) -> Motion:
     return change if change != motion and good(name, change) else motion
 
 
@@ -90,10 +93,12 @@ def _with_mean(motion: Motion, place: int) -> Motion:
 
 
 def _stays(motion: Motion, road: Road) -> bool:
-    """Whether the box stays between the edges of the road at every knot, and goes straight in the end."""
+    """Return whether the box stays between the edges of the road at every knot, and goes straight in the
+    end.
+    """
     right = min(lanelet.d[0] for lanelet in road.lanelets)
     left = max(lanelet.d[1] for lanelet in road.lanelets)
-    knots = starts_of(motion)
+    knots = piece_starts(motion)
     return knots[-1].v_lat == 0 and all(right <= x.d - motion.width and x.d <= left for x in knots)
 
 

@@ -1,4 +1,4 @@
-"""Short drives in great number: every vehicle has three pieces of equal length and a last one.
+"""Builds many short drives: each vehicle has three pieces of equal length and a last one.
 
 A pattern is a row of shares in [0, 1), each of which chooses from a list. The same row makes samples for
 the monitor, in floating point, and a drive for the judge, in rational numbers.
@@ -27,7 +27,7 @@ COLUMNS = 8  # of one vehicle; before them is one for the duration
 
 @dataclass(frozen=True)
 class Menu:
-    """What the motion of one vehicle is put together from, in SI units.
+    """The building blocks for the motion of one vehicle, in SI units.
 
     ``speed`` and ``acceleration`` are the ranges that the motion keeps along the road; ``drifts``: speeds
     across the road at the start.
@@ -54,7 +54,7 @@ class Patterns:
 
     @property
     def columns(self) -> int:
-        """How many shares make a drive; those of drifts come last, where there are any."""
+        """The number of shares that make a drive; those of drifts come last, where vehicles drift."""
         drifting = any(len(menu.drifts) > 1 for menu in self.menus.values())
         return 1 + (COLUMNS + drifting) * len(self.menus)
 
@@ -94,7 +94,7 @@ class Patterns:
 
 
 def spread(first: int, count: int, columns: int) -> Shares:
-    """Rows of shares that lie evenly: multiples of the roots of primes (H. Weyl, 1916)."""
+    """Return evenly spread rows of shares: multiples of the roots of primes (H. Weyl, 1916)."""
     primes = [n for n in range(2, 400) if all(n % p for p in range(2, int(n**0.5) + 1))][:columns]
     roots = np.sqrt(np.array(primes, dtype=np.float64))
     return np.asarray(np.mod(np.arange(first + 1, first + count + 1)[:, None] * roots[None, :], 1.0))
@@ -110,27 +110,29 @@ def _floats(values: Sequence[Fraction], shares: Shares) -> Shares:
 
 
 def _motion(menu: Menu, duration: Fraction, row: Sequence[float], share: float) -> Motion:
-    speed = begun = _chosen(menu.speeds, row[0])
+    speed = initial_speed = _chosen(menu.speeds, row[0])
     swerve = SWERVES[min(int(row[7] * len(SWERVES)), len(SWERVES) - 1)]
     pieces: list[Piece] = []
     for k in range(PIECES):
-        wanted = speed + _chosen(menu.accelerations, row[3 + k]) * duration
-        after = min(max(wanted, menu.speed[0]), menu.speed[1])
+        target = speed + _chosen(menu.accelerations, row[3 + k]) * duration
+        after = min(max(target, menu.speed[0]), menu.speed[1])
         pieces.append(Piece(duration, (after - speed) / duration, swerve[k] * menu.swerve / duration**2))
         speed = after
     pieces.append(Piece(None, _chosen(menu.last, row[6]), Fraction(0)))
     place, side = _chosen(menu.places, row[1]), _chosen(menu.sides, row[2])
     model, drift = menu.model, _chosen(menu.drifts, share)
-    return Motion(model.length, model.width, place, side, begun, drift, tuple(pieces), kind=model.kind)
+    return Motion(
+        model.length, model.width, place, side, initial_speed, drift, tuple(pieces), kind=model.kind
+    )
 
 
 def _samples(menu: Menu, durations: Shares, rows: Shares, shares: Shares, times: Shares) -> dict[str, Shares]:
-    """What ``_motion`` makes of each row, sampled."""
-    speed = begun = _floats(menu.speeds, rows[:, 0])
+    """Return the signals of the motions of all rows, sampled at ``times``, as ``_motion`` builds them."""
+    speed = initial_speed = _floats(menu.speeds, rows[:, 0])
     along: list[Shares] = []
     for k in range(PIECES):
-        wanted = speed + _floats(menu.accelerations, rows[:, 3 + k]) * durations
-        after = np.clip(wanted, float(menu.speed[0]), float(menu.speed[1]))
+        target = speed + _floats(menu.accelerations, rows[:, 3 + k]) * durations
+        after = np.clip(target, float(menu.speed[0]), float(menu.speed[1]))
         along.append((after - speed) / durations)
         speed = after
     along.append(_floats(menu.last, rows[:, 6]))
@@ -138,7 +140,7 @@ def _samples(menu: Menu, durations: Shares, rows: Shares, shares: Shares, times:
     chosen = table[np.minimum((rows[:, 7] * len(SWERVES)).astype(np.int64), len(SWERVES) - 1)]
     across = [chosen[:, k] * float(menu.swerve) / durations**2 for k in range(PIECES)]
     across.append(np.zeros(len(rows)))
-    s, v_lon, a_lon = _course(_floats(menu.places, rows[:, 1]), begun, along, durations, times)
+    s, v_lon, a_lon = _course(_floats(menu.places, rows[:, 1]), initial_speed, along, durations, times)
     d, v_lat, a_lat = _course(
         _floats(menu.sides, rows[:, 2]), _floats(menu.drifts, shares), across, durations, times
     )
@@ -149,7 +151,7 @@ def _samples(menu: Menu, durations: Shares, rows: Shares, shares: Shares, times:
 def _course(
     place: Shares, speed: Shares, accelerations: Sequence[Shares], durations: Shares, times: Shares
 ) -> tuple[Shares, Shares, Shares]:
-    """Place, speed and acceleration at ``times``, a row each."""
+    """Return place, speed and acceleration at ``times``, shape (times, rows)."""
     s = place + 0.0 * times
     v, a = 0.0 * s, 0.0 * s
     number = np.minimum(np.floor(times / durations + 1e-9), len(accelerations) - 1)

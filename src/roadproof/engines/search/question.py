@@ -1,35 +1,35 @@
-"""What is asked for, on which grid, with which vehicles, how to look for it, and what was found."""
+"""Settings of a search and the problem that a formula makes of them: road, grid, vehicles, lanes."""
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import field
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cached_property
 from itertools import product
 from math import ceil, prod
 
-from roadproof.engines.encode.along import starting_range
 from roadproof.engines.encode.build import Assumptions
-from roadproof.engines.encode.motion import own_columns
+from roadproof.engines.encode.motion import custom_signal_ranges
+from roadproof.engines.encode.shift_invariance import starting_range
 from roadproof.engines.encode.unroll import Grid, common_step
 from roadproof.engines.search.initial_conditions import Start
-from roadproof.engines.search.limits import Limits
+from roadproof.engines.search.limits import SearchLimits
+from roadproof.engines.search.usual_road import usual_road
+from roadproof.engines.setting import Setting
 from roadproof.errors import UsageError
-from roadproof.evidence.claim import Engine, Exists, Objective
 from roadproof.library.bind import bind, values_with
 from roadproof.library.specification import Library, Query
 from roadproof.logic import formula as f
 from roadproof.logic import rewrite
 from roadproof.logic import terms as t
-from roadproof.logic.custom_names import code_of, told_range, vehicles_with_kind
-from roadproof.logic.formula import Formula, subformulas
-from roadproof.logic.initial_conditions import conjuncts
-from roadproof.runtime.budget import Effort
+from roadproof.logic.custom_names import code_of, range_text, vehicles_with_kind
+from roadproof.logic.formula import Formula
+from roadproof.logic.initial_conditions import top_level_conjuncts
 from roadproof.runtime.records import dataclass
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.world.bends import on_bends
 from roadproof.world.drive import Drive
-from roadproof.world.models import load_road, load_vehicle, names_of
+from roadproof.world.models import load_vehicle, names_of
 from roadproof.world.road import Road
 from roadproof.world.signals import KINDS, Kind
 from roadproof.world.vehicle import Range, Vehicle, with_limits
@@ -38,10 +38,10 @@ MOST_ASSIGNMENTS = 1024  # of lanes of a road to the lanes of a formula
 
 
 def usual_model(formula: Formula, vehicle: str) -> Vehicle:
-    """The shipped model of the first kind that is not excluded by a part of the conjunction ``formula``."""
-    asked = [part for part in conjuncts(formula) if _is_about_kind(part, vehicle)]
+    """Return the shipped model of the first kind that no conjunct of ``formula`` excludes."""
+    conditions = [part for part in top_level_conjuncts(formula) if _is_kind_condition(part, vehicle)]
     kinds = (kind for kind in KINDS if kind in names_of("vehicles"))
-    return load_vehicle(next((k for k in kinds if all(_holds(x, vehicle, k) for x in asked)), KINDS[0]))
+    return load_vehicle(next((k for k in kinds if all(_holds(x, vehicle, k) for x in conditions)), KINDS[0]))
 
 
 def refuse_unknown(formula: Formula, vehicle: str, model: Vehicle) -> None:
@@ -53,8 +53,8 @@ def refuse_unknown(formula: Formula, vehicle: str, model: Vehicle) -> None:
         )
 
 
-def _is_about_kind(part: Formula, vehicle: str) -> bool:
-    """Whether ``part`` says something of the kind of ``vehicle``, and of nothing else."""
+def _is_kind_condition(part: Formula, vehicle: str) -> bool:
+    """Return whether ``part`` says something of the kind of ``vehicle``, and of nothing else."""
     about = (f.Truth, f.Compare, f.Not, f.And, f.Or, f.Application)
     if not all(isinstance(x, about) for x in f.subformulas(part)):
         return False
@@ -71,7 +71,7 @@ MOST_STEPS = 400
 
 
 def make_grid(horizon: Fraction, dt: Fraction) -> Grid:
-    """Raises ``UsageError`` unless the horizon is a sensible multiple of dt."""
+    """Return the grid. Raises ``UsageError`` unless the horizon is a sensible multiple of dt."""
     if dt <= 0 or horizon <= 0:
         raise UsageError(f"horizon={horizon} s and dt={dt} s must be greater than 0")
     steps = horizon / dt
@@ -88,14 +88,14 @@ def make_grid(horizon: Fraction, dt: Fraction) -> Grid:
 
 
 def fitting_grid(horizon: Fraction, formula: Formula, values: Mapping[str, Fraction]) -> Grid:
-    """The coarsest grid, of at most 3/5 s, of whose step all durations and the horizon are multiples.
+    """Return the coarsest grid, of at most 3/5 s, whose step divides all durations and the horizon.
 
-    Where only the horizon is in the way, it grows to a multiple. Raises ``UsageError`` where the grid
-    would have too many steps.
+    If only the horizon is in the way, it grows to a multiple. Raises ``UsageError`` where the grid would have
+    too many steps.
     """
     step = Fraction(0)
-    found = durations(formula, values)
-    for duration in found:
+    lengths = durations(formula, values)
+    for duration in lengths:
         step = common_step(step, duration)
     dt = coarsest(step)
     with_horizon = coarsest(common_step(step, horizon))
@@ -104,25 +104,26 @@ def fitting_grid(horizon: Fraction, formula: Formula, values: Mapping[str, Fract
     if horizon / with_horizon > MOST_STEPS:
         raise UsageError(
             f"horizon={horizon} s has {horizon / with_horizon} steps of dt={with_horizon} s, and at most "
-            f"{MOST_STEPS} are allowed. The formula's durations must be multiples of dt ({_some(found)}): "
-            "choose a shorter horizon, or durations that are multiples of a longer time"
+            f"{MOST_STEPS} are allowed. The formula's durations must be multiples of dt "
+            f"({_listed(lengths)}): choose a shorter horizon, or durations that are multiples of a "
+            "longer time"
         )
     return make_grid(horizon, with_horizon)
 
 
-def _some(found: Collection[Fraction]) -> str:
-    """Some durations in seconds, the shortest first."""
-    shown = [f"{x} s" for x in sorted(x for x in found if x)]
+def _listed(lengths: Collection[Fraction]) -> str:
+    """Return a list of durations in seconds, the shortest first, cut after six."""
+    shown = [f"{x} s" for x in sorted(x for x in lengths if x)]
     return ", ".join(shown[:6]) + (", …" if len(shown) > 6 else "")
 
 
 def coarsest(step: Fraction, most: Fraction = COARSEST) -> Fraction:
-    """The greatest part of ``step``, one over a whole number, that is at most ``most``; of 0 it is that."""
+    """Return the greatest ``step / n``, n whole, that is at most ``most``; ``most`` where step is 0."""
     return step / ceil(step / most) if step else most
 
 
 def durations(formula: Formula, values: Mapping[str, Fraction]) -> set[Fraction]:
-    """The finite bounds of all intervals, in s, with parameters at ``values``."""
+    """Return the finite bounds of all intervals, in s, with parameters at ``values``."""
     bounds = (
         rewrite.bounds_of(interval) for interval in rewrite.intervals_of(rewrite.with_values(formula, values))
     )
@@ -130,37 +131,11 @@ def durations(formula: Formula, values: Mapping[str, Fraction]) -> set[Fraction]
 
 
 @dataclass(frozen=True)
-class Setting:
-    """Where, with whom and for how long drives are looked for; a formula makes a ``SearchProblem`` of it.
-
-    ``road`` None is the usual road of the formula; ``lanes`` are free lanes that stand for one lane.
-    ``vehicles`` by name, "" for all others (where nothing is said a car, or of what kind the formula asks
-    for), and ``limits`` other limits than theirs, such as ``{"POV": {"a_lon.min": -2}}``
-    (``world.vehicle.with_limits``). ``values``: parameters with another value than the declared one (SI).
-    ``horizon``, ``dt``: seconds; ``dt`` None is the coarsest
-    that fits (``grid.fitting_grid``). ``reach``: how far apart
-    vehicles may start (m). ``collisions``: boxes may overlap. ``natural``: whether natural drives are tried
-    first.
-    """
-
-    road: Road | None = None
-    lanes: Mapping[str, str] = field(default_factory=dict)
-    vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
-    limits: Mapping[str, Mapping[str, Fraction]] = field(default_factory=dict)
-    values: Mapping[str, Fraction] = field(default_factory=dict)
-    horizon: Fraction = Fraction(6)
-    dt: Fraction | None = None
-    reach: Fraction = Fraction(80)
-    collisions: bool = False
-    natural: bool = True
-
-
-@dataclass(frozen=True)
 class SearchProblem:
-    """For which drive does ``query`` hold on ``road``?
+    """The question for which drives ``query`` holds on ``road``.
 
-    ``lanes`` are the assignments of lanes to be tried, in order. With a ``start`` a search is for drives that
-    begin so only, and finds nothing out about others.
+    ``lanes``: assignments of lanes to try, in order. With a ``start`` the search covers only drives that
+    begin so, and shows nothing about others.
     """
 
     query: Query
@@ -172,30 +147,30 @@ class SearchProblem:
     assumptions: Assumptions = field(default_factory=Assumptions)
     start: Start | None = None
 
-    def asked(self, lanes: Mapping[str, str]) -> Formula:
-        """What is asked of an engine: without the parts in place of which the start is."""
+    def formula_for_engine(self, lanes: Mapping[str, str]) -> Formula:
+        """Return the formula for an engine, without the parts that the start replaces."""
         formula = self.bound(lanes)
         return formula if self.start is None else self.start.without(formula)
 
     def bound(self, lanes: Mapping[str, str]) -> Formula:
-        """The formula under one assignment of lanes."""
+        """Return the formula under one assignment of lanes."""
         return bind(self.query.formula, self.road, lanes, self.values)
 
     @cached_property
     def starts(self) -> Range | None:
-        """Where fronts may be at time 0; None where every place along the road is as good as another."""
+        """The range of fronts at time 0; None where s = 0 stands for every place along the road."""
         formulas = [self.bound(lanes) for lanes in self.lanes]
         return starting_range(formulas, self.road, self.vehicles, self.grid, self.assumptions.reach)
 
-    def limits(self, shown: Iterable[str] = ()) -> Limits:
-        """Within what a NONE-WITHIN says that there is none; ``shown``: how that was shown."""
+    def limits(self, shown: Iterable[str] = ()) -> SearchLimits:
+        """Return the limits of a NONE-WITHIN; ``shown``: how it was shown."""
         options = {name: {lanes[name] for lanes in self.lanes} for name in self.query.lanes}
         spoken = rewrite.parameters_of(self.query.formula)
-        return Limits(
+        return SearchLimits(
             self.road.name,
             self.grid,
             {name: vehicle.name for name, vehicle in self.vehicles.items()},
-            {n: next(iter(found)) for n, found in options.items() if len(found) < len(self.road.lanes)},
+            {n: next(iter(chosen)) for n, chosen in options.items() if len(chosen) < len(self.road.lanes)},
             {name: value for name, value in self.values.items() if name in spoken},
             self.assumptions.reach,
             self.starts,
@@ -206,41 +181,17 @@ class SearchProblem:
         )
 
     def _own_ranges(self) -> dict[str, str]:
-        """Between which values own signals are looked for, whatever lanes are chosen."""
-        found: dict[t.Own, list[Range]] = {}
+        """Return the search ranges of custom signals over all assignments of lanes, as text."""
+        ranges_of: dict[t.CustomSignal, list[Range]] = {}
         for lanes in self.lanes:
-            for own in own_columns(self.bound(lanes)):
-                found.setdefault(own.signal, []).append(own.range)
+            for own in custom_signal_ranges(self.bound(lanes)):
+                ranges_of.setdefault(own.signal, []).append(own.range)
         return {
-            signal.told: "false or true"
+            signal.text: "false or true"
             if signal.truth
-            else told_range(max(x for x, _ in ranges), min(x for _, x in ranges), signal.dimension)
-            for signal, ranges in found.items()
+            else range_text(max(x for x, _ in ranges), min(x for _, x in ranges), signal.dimension)
+            for signal, ranges in ranges_of.items()
         }
-
-
-@dataclass(frozen=True)
-class SearchOptions:
-    """How to search: engine, solver, objective, work for one drive, finer grids to try.
-
-    ``explain``: whether to show that there is none where none was found.
-    """
-
-    objective: Objective = "smooth"
-    engine: Engine = "milp"
-    solver: str = "highs"
-    effort: Effort = field(default_factory=Effort)
-    refinements: int = 2
-    explain: bool = True
-
-
-def exists(setting: Setting, options: SearchOptions) -> Exists:
-    """Return how drives are asked for: every field of both but the values of parameters and the effort.
-
-    A field that ``Exists`` lacks is an error, so none can be left out of the digest of a claim.
-    """
-    given = {**vars(setting), **vars(options)}
-    return Exists(**{name: value for name, value in given.items() if name not in ("values", "effort")})
 
 
 @dataclass(frozen=True)
@@ -255,7 +206,7 @@ class FoundDrive:
 
 
 def pose(library: Library, query: Query, setting: Setting) -> SearchProblem:
-    """The question with road, vehicles and grid in place. Raises ``UsageError``, ``InputError``."""
+    """Return the problem with road, vehicles and grid. Raises ``UsageError``, ``InputError``."""
     road = setting.road or usual_road(query.formula)
     for name in (*setting.vehicles, *setting.limits):
         if name and name not in query.vehicles:
@@ -274,7 +225,7 @@ def pose(library: Library, query: Query, setting: Setting) -> SearchProblem:
     values = values_with(library, setting.values)
     lanes = assignments(query, road, setting.lanes)
     assumptions = Assumptions(reach=setting.reach, collisions=setting.collisions)
-    assumptions = assumptions if setting.natural else assumptions.plain()
+    assumptions = assumptions if setting.natural else assumptions.without_comfort()
     if setting.dt is None:
         grid = fitting_grid(setting.horizon, query.formula, values)
     else:
@@ -283,10 +234,10 @@ def pose(library: Library, query: Query, setting: Setting) -> SearchProblem:
 
 
 def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[dict[str, str], ...]:
-    """Every way to give the free lanes of ``query`` lanes of ``road`` that agrees with ``chosen``.
+    """Return all assignments of lanes of ``road`` to free lanes of ``query`` that agree with ``chosen``.
 
-    Raises ``UsageError`` for a lane that the road does not have or the query does not speak of, and for more
-    ways than a search can try.
+    Raises ``UsageError`` for a lane that the road lacks or the query does not mention, and for more
+    assignments than a search can try.
     """
     for name, lane in chosen.items():
         if lane not in road.lanes:
@@ -303,18 +254,3 @@ def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[di
             f"{query.lanes[0]}={road.lanes[0]}"
         )
     return tuple(dict(zip(query.lanes, lanes, strict=True)) for lanes in product(*options))
-
-
-def usual_road(formula: Formula) -> Road:
-    """The reference road that has the zones which ``formula`` speaks of: merge, depart, else main-2."""
-    zones = zones_of(formula)
-    return _reference("merge" if "merge" in zones else "depart" if "depart" in zones else "main-2")
-
-
-_reference = cache(load_road)
-
-
-def zones_of(formula: Formula) -> frozenset[str]:
-    """The zones that a formula speaks of."""
-    quantified = (x for x in subformulas(formula) if isinstance(x, f.Some | f.Every))
-    return frozenset(x.domain.of for x in quantified if x.domain.kind == "zone")

@@ -1,23 +1,23 @@
-"""Drives against claims: a drive on a reference road on which a claim is false."""
+"""Searches drives that falsify a claim on a reference road."""
 
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
-from roadproof.engines.search.ask import ask, reads_all
 from roadproof.engines.search.constant_motion import steady_drive
-from roadproof.engines.search.enumeration import Within, small_drive
+from roadproof.engines.search.drive_search import engine_reads_all, search_drive
+from roadproof.engines.search.enumeration import Within, short_refuting_drive
 from roadproof.engines.search.initial_candidates import space_of
-from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.question import SearchOptions, Setting, pose, usual_model
+from roadproof.engines.search.question import pose, usual_model
 from roadproof.engines.search.sampling import Space, states
+from roadproof.engines.setting import Search, SearchOptions, Setting
 from roadproof.evidence.countermodel import Countermodel, Instant
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind, values_with
 from roadproof.library.compose import negation
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import is_state
-from roadproof.logic.initial_conditions import pins
+from roadproof.logic.initial_conditions import forced_values
 from roadproof.logic.rewrite import is_cubic_state
 from roadproof.logic.terms import Signal
 from roadproof.runtime.budget import Budget, Effort
@@ -35,9 +35,9 @@ FASTEST, HARDEST = Fraction(80), Fraction(12)  # m/s and m/s^2
 def quick_drive(
     specification: Specification, claim: Query, clock: Budget | None = None
 ) -> JudgedDrive | None:
-    """A short drive on which ``claim`` is false, within the limits of the usual models, else without them.
+    """Return a short drive on which ``claim`` is false, first within the usual models' limits, then without.
 
-    Found without a solver, in some tenths of a second; None where none was found. Raises ``BudgetExceeded``
+    It takes no solver and some tenths of a second; None where none was found. Raises ``BudgetExceeded``
     where the seconds of the ``clock`` have passed.
     """
     return _small(specification, claim, 1, clock)
@@ -47,25 +47,25 @@ def _small(
     specification: Specification, claim: Query, rounds: int, clock: Budget | None = None
 ) -> JudgedDrive | None:
     for within in WITHIN:
-        found = small_drive(specification, claim, within, rounds, clock)
-        if found is not None:
-            return found
+        drive = short_refuting_drive(specification, claim, within, rounds, clock)
+        if drive is not None:
+            return drive
     return None
 
 
 def refuting_drive(
     specification: Specification, claim: Query, effort: Effort, known: JudgedDrive | None = None
 ) -> JudgedDrive | None:
-    """A judged drive on which ``claim`` is false at time 0, or None where none was found.
+    """Return a judged drive on which ``claim`` is false at time 0, or None where none was found.
 
-    Within the limits of the usual models first, then without limits, where ``known`` is such a drive.
-    Looked for on the usual road, with parameters at the values that the claim's premise demands, and at the
-    declared ones else; not for a claim about one instant that no engine reads, of which a state says all.
-    Raises ``InputError`` and ``UsageError`` for claims that are not about drives, and ``BudgetExceeded``.
+    Searched within the limits of the usual models first, then (unless ``known`` is such a drive) without.
+    On the usual road, with parameters at the values that the claim's premise forces, else declared ones; not
+    for a claim about one instant that no engine can encode. Raises ``InputError`` and ``UsageError`` for
+    claims that are not about drives, and ``BudgetExceeded``.
     """
-    setting = Setting(values=pins(claim.formula))
+    setting = Setting(values=forced_values(claim.formula))
     units = min(DRIVE if known is None else KNOWN, effort.units)
-    within = _searched(specification, claim, setting, effort.of(units))
+    within = _searched(specification, claim, setting, effort.with_units(units))
     if within is not None or known is not None:
         return within or known
     small = _small(specification, claim, ROUNDS, effort.meter())
@@ -73,7 +73,7 @@ def refuting_drive(
         return small
     wide = {name: _without_limits(usual_model(negation(claim).formula, name)) for name in claim.vehicles}
     anyhow = replace(setting, vehicles=wide, collisions=True, natural=False)
-    return _searched(specification, claim, anyhow, effort.of(min(WIDER, effort.units)))
+    return _searched(specification, claim, anyhow, effort.with_units(min(WIDER, effort.units)))
 
 
 def _searched(
@@ -81,14 +81,14 @@ def _searched(
 ) -> JudgedDrive | None:
     search_options = SearchOptions("smooth", effort=effort, explain=False)
     search = Search(specification, negation(claim), setting, search_options)
-    if is_state(claim.formula) and not reads_all(search):
+    if is_state(claim.formula) and not engine_reads_all(search):
         return None
-    outcome = ask(search)
+    outcome = search_drive(search)
     return outcome.drives[0] if outcome.drives else None
 
 
 def _without_limits(model: Vehicle) -> Vehicle:
-    """The same box, which may stand, drive fast and swerve; the search knows no reversing."""
+    """Return the same box, able to stand, drive fast and swerve; the search has no reversing."""
     return replace(
         model,
         name=f"{model.name} without limits",
@@ -102,7 +102,7 @@ def _without_limits(model: Vehicle) -> Vehicle:
 
 
 def beyond_limits(drive: JudgedDrive) -> str:
-    """How a drive leaves the limits of the usual models, in words; '' where it keeps them.
+    """Return how a drive leaves the limits of the usual models, in words; '' where it keeps them.
 
     Boxes that overlap within the horizon of the file count as well.
     """
@@ -118,11 +118,11 @@ def beyond_limits(drive: JudgedDrive) -> str:
 def sampled_drive(
     specification: Specification, claim: Query, values: Mapping[str, Fraction], setting: Setting
 ) -> JudgedDrive | None:
-    """A drive of constant motion on which ``claim`` is false at time 0, or None where none was found.
+    """Return a drive of constant motion on which ``claim`` is false at time 0, or None.
 
-    States are looked for within what the vehicles of ``setting`` can do, then around that; the drive need
-    not keep their limits. ``values`` of parameters, SI. Only for claims about one instant that speak of the
-    signals of vehicles and of nothing else; of others it is None.
+    States are sampled within the limits of the vehicles of ``setting``, then around them; the drive need not
+    keep these limits. ``values`` of parameters, SI. Only for claims about one instant that have signals of
+    vehicles and nothing else.
     """
     against = negation(claim)
     if not claim.vehicles or not is_cubic_state(claim.formula):
@@ -135,15 +135,17 @@ def sampled_drive(
         for state in states(formula, space, 1):
             now = {f"{x.name}({x.vehicle})": value for x, value in state.items()}
             now |= {f"{x.name}({x.vehicle})": value for x, value in space.sizes.items()}
-            found = Countermodel((Instant(Fraction(0), now, {}),), values_with(library, values), "before")
-            drive = steady_drive(specification, claim, found, values_with(library, values))
+            countermodel = Countermodel(
+                (Instant(Fraction(0), now, {}),), values_with(library, values), "before"
+            )
+            drive = steady_drive(specification, claim, countermodel, values_with(library, values))
             if drive is not None:
                 return drive
     return None
 
 
 def _around(space: Space) -> Space:
-    """As much again on both sides of every range; no vehicle reverses."""
+    """Return a space whose ranges extend by their width on both sides; no vehicle reverses."""
 
     def wider(signal: Signal, ends: Range) -> Range:
         low, high = ends

@@ -1,64 +1,69 @@
-"""What helps a claim that ends UNKNOWN: the first option that the program takes for this claim.
+"""Finds a remedy for a claim that ends UNKNOWN: the first option that the program accepts for it.
 
-Each remedy is tried for acceptance before it is named: limits are put to the claim, and the question about
-drives on a road is posed. Only the answer to it is not computed.
+Each remedy is tested for acceptance before it is named: limits are applied to the claim, and the question
+about drives on a road is set up. Only its answer is not computed.
 """
 
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
-from roadproof.engines.prove.doubt import Cause, Remedy
-from roadproof.engines.search.question import Setting, pose, usual_model, usual_road
+from roadproof.engines.prove.unknown import Cause, Remedy
+from roadproof.engines.search.question import pose, usual_model
+from roadproof.engines.search.usual_road import usual_road
+from roadproof.engines.setting import Setting
 from roadproof.errors import InputError, UsageError
+from roadproof.library.assumption import MOTION, assumes_motion, limits_in
 from roadproof.library.compose import negation
-from roadproof.library.motion import MOTION, is_moving, limits_of, limits_said, under_limits, values_said
+from roadproof.library.motion import limits_of, under_limits, values_in
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.rewrite import parameters_of
 
-Attempt: TypeAlias = Callable[[], Remedy | None]
+RemedyTry: TypeAlias = Callable[[], Remedy | None]
 
 
-def remedy_of(specification: Specification, query: Query, said: Sequence[str], cause: Cause) -> Remedy | None:
-    """What helps; None where the cause alone tells it, and where no option is known to help.
+def find_remedy(
+    specification: Specification, query: Query, assumed: Sequence[str], cause: Cause
+) -> Remedy | None:
+    """Return a remedy; None where the cause alone gives it, and where no option is known to help.
 
-    ``said``: what the claim is asked under, in words.
+    ``assumed``: the assumptions of the claim, in words.
     """
     if cause in (Cause.WORK, Cause.CLOCK, Cause.PROCESS):
         return None
-    tries: dict[Cause, tuple[Attempt, ...]] = {
-        Cause.SOLVER: (lambda: _declared(specification, query, said),),
-        Cause.FACTS: (lambda: _limits(specification, query, said),),
-        Cause.SECOND_ORDER: (lambda: _limits(specification, query, said),),
-        Cause.FIRST_INSTANT: (lambda: _motion(said),),
+    tries: dict[Cause, tuple[RemedyTry, ...]] = {  # partial: other causes have no remedy of their own
+        Cause.SOLVER: (lambda: _declared(specification, query, assumed),),
+        Cause.FACTS: (lambda: _limits(specification, query, assumed),),
+        Cause.SECOND_ORDER: (lambda: _limits(specification, query, assumed),),
+        Cause.FIRST_INSTANT: (lambda: _motion(assumed),),
     }
-    within: Attempt = lambda: _within(specification, query, said)  # noqa: E731
-    found = (attempt() for attempt in (*tries.get(cause, ()), within))
-    return next((x for x in found if x is not None), None)
+    within: RemedyTry = lambda: _within(specification, query, assumed)  # noqa: E731
+    remedies = (attempt() for attempt in (*tries.get(cause, ()), within))
+    return next((x for x in remedies if x is not None), None)
 
 
-def _declared(specification: Specification, query: Query, said: Sequence[str]) -> Remedy | None:
+def _declared(specification: Specification, query: Query, assumed: Sequence[str]) -> Remedy | None:
     """The declared values of parameters, where some have no value yet."""
-    open_ = set(parameters_of(query.formula)) - set(values_said(specification, said))
+    open_ = set(parameters_of(query.formula)) - set(values_in(specification, assumed))
     return Remedy("fix the parameters: --declared", ("--declared",)) if open_ else None
 
 
-def _motion(said: Sequence[str]) -> Remedy | None:
-    if is_moving(said):
+def _motion(assumed: Sequence[str]) -> Remedy | None:
+    if assumes_motion(assumed):
         return None
     return Remedy("add --assume motion: positions and speeds are then continuous", ("--assume", "motion"))
 
 
-def _limits(specification: Specification, query: Query, said: Sequence[str]) -> Remedy | None:
+def _limits(specification: Specification, query: Query, assumed: Sequence[str]) -> Remedy | None:
     """The limits of a model for a vehicle that has none yet."""
-    limited = {x.partition("(")[2].partition(")")[0] for x in limits_said(tuple(said))}
+    limited = {x.partition("(")[2].partition(")")[0] for x in limits_in(tuple(assumed))}
     for name in query.vehicles:
         model = usual_model(negation(query).formula, name)
         more = tuple(limits_of(query, name, model))
         if name in limited or not more:
             continue
-        begun = tuple(said) if is_moving(said) else (MOTION, *said)
+        with_motion = tuple(assumed) if assumes_motion(assumed) else (MOTION, *assumed)
         try:
-            under_limits(specification, query, (*begun, *more))
+            under_limits(specification, query, (*with_motion, *more))
         except (InputError, UsageError):
             continue
         options = ("--assume", "motion", "--vehicle", f"{name}={model.name}")
@@ -66,7 +71,7 @@ def _limits(specification: Specification, query: Query, said: Sequence[str]) -> 
     return None
 
 
-def _within(specification: Specification, query: Query, said: Sequence[str]) -> Remedy | None:
+def _within(specification: Specification, query: Query, assumed: Sequence[str]) -> Remedy | None:
     """A question about drives on one road, where it can be posed."""
     road = usual_road(query.formula)
     try:
@@ -76,5 +81,5 @@ def _within(specification: Specification, query: Query, said: Sequence[str]) -> 
     except (InputError, UsageError):
         return None
     options = ("--engine", "smt", "--road", road.name)
-    what = "ask about drives on one road" + (", and assume nothing" if said else "")
-    return Remedy(f"{what}: {' '.join(options)}", options, without_assumptions=bool(said))
+    what = "ask about drives on one road" + (", and assume nothing" if assumed else "")
+    return Remedy(f"{what}: {' '.join(options)}", options, without_assumptions=bool(assumed))

@@ -1,8 +1,8 @@
-"""States in which a formula about one instant holds, found by looking at many.
+"""Samples states in which a formula about one instant holds.
 
-Points are spread over ranges of signals by a sequence that is the same on every machine, each on a grid of
-few digits, and looked at in vectors. Where few of them do, the nearest ones are looked around, ever closer.
-What is handed out has been judged exactly; where nothing is, nothing is said.
+Points are spread over ranges of signals by a sequence that is the same on every machine, each on a grid
+of few digits, and evaluated in vectors. If few satisfy the formula, the search closes in on the nearest.
+Every returned state has been judged exactly; an empty result shows nothing.
 """
 
 from collections.abc import Iterator, Mapping
@@ -12,16 +12,16 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from roadproof.engines.encode.inequalities import Quantity, polynomial_of
+from roadproof.engines.encode.inequalities import Quantity, term_polynomial
 from roadproof.engines.search.patterns import spread
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula
-from roadproof.logic.initial_conditions import conjuncts
+from roadproof.logic.initial_conditions import top_level_conjuncts
 from roadproof.logic.rewrite import leaves_of
-from roadproof.logic.terms import Own, Signal, Size
+from roadproof.logic.terms import CustomSignal, Signal, Size
 from roadproof.runtime.records import dataclass
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import Monitor, compile
@@ -43,7 +43,7 @@ DIGITS = 400  # at least so many values in a range
 
 @dataclass(frozen=True)
 class Space:
-    """Where to look: a range of each signal (SI), which may be one value, and the sizes of vehicles (m)."""
+    """The space of samples: a range of each signal (SI), which may be one value, and vehicle sizes (m)."""
 
     ranges: Mapping[Signal, Range]
     sizes: Mapping[Size, Fraction]
@@ -58,39 +58,38 @@ class _Axis:
 
     @property
     def count(self) -> int:
-        """How many values there are beside the first."""
+        """Return how many values there are beside the first."""
         return int((self.high - self.low) / self.grain)
 
     def values(self, shares: Points) -> Points:
-        """Whole numbers of grains above the first, from shares of the range."""
+        """Map shares of the range to whole numbers of grains above its lower end."""
         return np.clip(np.floor(shares * (self.count + 1)), 0, self.count)
 
 
 def states(formula: Formula, space: Space, most: int) -> list[State]:
-    """At most ``most`` states of the signals that ``formula`` speaks of, in ``space`` and unlike each other.
+    """Return at most ``most`` states in ``space``, unlike each other, in which ``formula`` holds.
 
-    ``formula`` is bound and about one instant; it holds in each of them. None where none was found, which
-    says nothing. Raises ``InputError`` for what cannot be judged, ``KeyError`` for a signal or size without
-    range or value.
+    ``formula`` is bound and about one instant. An empty list shows nothing. Raises ``InputError`` where the
+    formula cannot be judged, ``KeyError`` for a signal or size without range or value.
     """
-    wanted = signals_in(formula)
-    solved, rest = _solve(formula, space, wanted)
-    axes = [_axis(x, *space.ranges[x]) for x in wanted if x not in solved]
+    signals = signals_in(formula)
+    solved, rest = _solve_equalities(formula, space, signals)
+    axes = [_axis(x, *space.ranges[x]) for x in signals if x not in solved]
     looking = _StateSampler(rest, space, axes, solved)
-    found: list[State] = []
-    for point in _unlike(looking.points(), axes, most):
+    accepted: list[State] = []
+    for point in _spread_out(looking.points(), axes, most):
         state = looking.exactly(point)
         inside = all(space.ranges[x][0] <= value <= space.ranges[x][1] for x, value in state.items())
         if inside and holds(formula, state, space.sizes):
-            found.append(state)
-            if len(found) == most:
+            accepted.append(state)
+            if len(accepted) == most:
                 break
-    return found
+    return accepted
 
 
 def holds(formula: Formula, state: State, sizes: Mapping[Size, Fraction]) -> bool:
-    """Whether a bound formula about one instant holds in a state: the judge's word."""
-    now: dict[Signal | Own, tuple[tuple[Fraction, Fraction], ...]] = {
+    """Return whether a bound formula about one instant holds in a state: the judge's word."""
+    now: dict[Signal | CustomSignal, tuple[tuple[Fraction, Fraction], ...]] = {
         signal: ((Fraction(0), value),) for signal, value in state.items()
     }
     return judge(formula, AbstractSignals(now, sizes)).holds
@@ -112,14 +111,14 @@ def _axis(signal: Signal, low: Fraction, high: Fraction) -> _Axis:
 # --- equalities --------------------------------------------------------------------------------
 
 
-def _solve(
-    formula: Formula, space: Space, wanted: list[Signal]
+def _solve_equalities(
+    formula: Formula, space: Space, signals: list[Signal]
 ) -> tuple[dict[Signal, Polynomial[Quantity]], Formula]:
     """Signals that equalities among the parts of a conjunction give as polynomials; all other parts.
 
     The polynomials are of signals that are not solved, or solved later. Ranges of one value are equalities.
     """
-    ends = {x: space.ranges[x] for x in wanted}
+    ends = {x: space.ranges[x] for x in signals}
     solved: dict[Signal, Polynomial[Quantity]] = {
         x: constant(low) for x, (low, high) in ends.items() if low == high
     }
@@ -127,12 +126,12 @@ def _solve(
     sizes = {(size.vehicle, size.name): value for size, value in space.sizes.items()}
     for left, right in _equalities(formula):
         try:
-            rest = polynomial_of(t.subtract(left, right), sizes)
+            rest = term_polynomial(t.subtract(left, right), sizes)
         except ValueError:
             continue  # extrema
         for signal, polynomial in solved.items():
-            rest = _with(rest, signal, polynomial)
-        for signal in sorted(wanted, key=lambda x: (x.name not in ("s", "d"), x.name, x.vehicle)):
+            rest = _substituted(rest, signal, polynomial)
+        for signal in sorted(signals, key=lambda x: (x.name not in ("s", "d"), x.name, x.vehicle)):
             alone = (_quantity(signal),)
             others = {m: c for m, c in rest.terms.items() if m != alone}
             if signal in solved or alone not in rest.terms or any(alone[0] in m for m in others):
@@ -145,10 +144,14 @@ def _solve(
     varying = [x for x in solved if ends[x][0] < ends[x][1]]
     inside = [Compare(x, ">=", t.number(ends[x][0])) for x in varying]
     inside += [Compare(x, "<=", t.number(ends[x][1])) for x in varying]
-    return solved, f.conjunction(*(part for part in conjuncts(formula) if part not in used), *inside)
+    return solved, f.conjunction(
+        *(part for part in top_level_conjuncts(formula) if part not in used), *inside
+    )
 
 
-def _with(polynomial: Polynomial[Quantity], signal: Signal, by: Polynomial[Quantity]) -> Polynomial[Quantity]:
+def _substituted(
+    polynomial: Polynomial[Quantity], signal: Signal, by: Polynomial[Quantity]
+) -> Polynomial[Quantity]:
     replaced = _quantity(signal)
     return polynomial.substitute(lambda q: by if q == replaced else variable(q))
 
@@ -158,7 +161,7 @@ def _quantity(signal: Signal) -> Quantity:
 
 
 def _equalities(formula: Formula) -> Iterator[tuple[t.Term, t.Term]]:
-    parts = [part for part in conjuncts(formula) if isinstance(part, Compare)]
+    parts = [part for part in top_level_conjuncts(formula) if isinstance(part, Compare)]
     above = {(x.left, x.right) for x in parts if x.op == ">="}
     for part in parts:
         if part.op == "<=" and (part.left, part.right) in above:
@@ -183,15 +186,15 @@ class _StateSampler:
         Evenly spread ones first, in several rounds; where none of these holds, those around the nearest.
         """
         monitor = compile({"all": self.formula})
-        found, batch = np.zeros((0, len(self.axes))), None
+        hits, batch = np.zeros((0, len(self.axes))), None
         for turn in range(SPREAD if self.axes else 1):
             points = self._around(np.full((1, len(self.axes)), 0.5), 0.5, turn)
             batch = self._batch(points)
-            found = np.concatenate([found, points[_true_at(monitor, batch)]])
-            if len(found) >= ENOUGH:
-                return found
-        if len(found) or batch is None or not self.axes:
-            return found
+            hits = np.concatenate([hits, points[_true_at(monitor, batch)]])
+            if len(hits) >= ENOUGH:
+                return hits
+        if len(hits) or batch is None or not self.axes:
+            return hits
         nearness = compile({"all": _scaled(self.formula, batch)})
         for turn in range(1, CLOSER):
             [margin] = nearness.measure(batch, "clip").margins.values()
@@ -200,10 +203,10 @@ class _StateSampler:
             shares = (nearest + 0.5) / [x.count + 1 for x in self.axes]
             points = self._around(shares, 0.5 / NARROWER**turn, turn)
             batch = self._batch(points)
-            found = points[_true_at(monitor, batch)]
-            if len(found):
+            hits = points[_true_at(monitor, batch)]
+            if len(hits):
                 break
-        return found
+        return hits
 
     def _around(self, shares: Points, reach: float, turn: int) -> Points:
         """Points spread evenly around some, which are shares of ranges; ``turn``: of a sequence."""
@@ -242,13 +245,13 @@ class _StateSampler:
 
 
 def _true_at(monitor: Monitor[str], batch: Batch) -> NDArray[np.bool_]:
-    """For each point of a batch whether the one formula of a monitor holds there."""
+    """Return for each point of a batch whether the one formula of a monitor holds there."""
     [answer] = monitor.evaluate(batch, "clip").answers.values()
     return answer.true
 
 
 def _scaled(formula: Formula, batch: Batch) -> Formula:
-    """The same truth, comparisons scaled so that a margin of 1 is usual: margins of any units compare."""
+    """Return an equivalent formula whose comparisons are scaled so that margins of any units compare."""
     parts = [x for x in f.subformulas(formula) if isinstance(x, Compare)]
     plain = [x for x in parts if not isinstance(x.left, t.Inverse) and not isinstance(x.right, t.Inverse)]
     margins = compile(dict(enumerate(plain))).measure(batch, "clip").margins
@@ -260,19 +263,19 @@ def _scaled(formula: Formula, batch: Batch) -> Formula:
     return f.transform(formula, lambda x: scaled.get(x, x))
 
 
-def _unlike(points: Points, axes: list[_Axis], most: int) -> Iterator[Points]:
+def _spread_out(points: Points, axes: list[_Axis], most: int) -> Iterator[Points]:
     """Points, each once; of ``CHOICE`` times ``most`` of them always the one farthest from those before."""
     if not len(points):
         return
     points = np.unique(points, axis=0)
     step = max(1, len(points) // (CHOICE * most))
     order = [k for first in range(step) for k in range(first, len(points), step)]
-    kept, rest = points[order[: CHOICE * most]], points[order[CHOICE * most :]]
-    places = kept / np.array([max(1, x.count) for x in axes]) if axes else kept
+    farthest_first, rest = points[order[: CHOICE * most]], points[order[CHOICE * most :]]
+    places = farthest_first / np.array([max(1, x.count) for x in axes]) if axes else farthest_first
     following = int(np.sum((places - places.mean(axis=0)) ** 2, axis=1).argmin())
-    far = np.full(len(kept), np.inf)
-    for _ in range(len(kept)):
-        yield kept[following]
+    far = np.full(len(farthest_first), np.inf)
+    for _ in range(len(farthest_first)):
+        yield farthest_first[following]
         far = np.minimum(far, np.sum((places - places[following]) ** 2, axis=1))
         far[following] = -1.0
         following = int(far.argmax())

@@ -1,20 +1,20 @@
-"""What a drive looks like once its choices are made: objectives for ``solve.smooth``, and rational numbers.
+"""Shapes drives once all choices are made: objectives for ``solve.smooth``, and rounding to rationals.
 
-Speeds at the samples are rounded and positions follow from them, so errors do not add up along the
-drive: at most grain·dt/2 a step.
+Speeds at the samples are rounded and positions follow from them, so errors do not add up along the drive:
+at most grain·dt/2 a step.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
-from roadproof.engines.encode.build import NONE, ground
-from roadproof.engines.encode.motion import Layout
-from roadproof.engines.encode.problem import Column, ColumnInequality, Problem, evaluate, implicant
+from roadproof.engines.encode.build import NO_MARGIN, ground_atoms
+from roadproof.engines.encode.motion import ColumnLayout
+from roadproof.engines.encode.problem import ColumnInequality, Problem, RealColumn, evaluate, implicant
 from roadproof.engines.encode.unroll import unroll_at
 from roadproof.engines.search.initial_conditions import Start
-from roadproof.engines.solve.bounds import Affine, Bound, TooNonlinearError, value_of
-from roadproof.engines.solve.milp import box_of
-from roadproof.engines.solve.smooth import Square, minimise, narrow, near
+from roadproof.engines.solve.bounds import Affine, Bound, TooNonlinearError, polynomial_value
+from roadproof.engines.solve.milp import column_box
+from roadproof.engines.solve.smooth import Square, linearise_at, minimise, trust_box
 from roadproof.evidence.claim import Objective
 from roadproof.library.scenarios import is_violation
 from roadproof.logic.custom_names import HALF
@@ -23,7 +23,7 @@ from roadproof.logic.terms import Signal
 from roadproof.world.drive import Course, Drive, Motion, Piece
 from roadproof.world.polynomial import Polynomial
 from roadproof.world.road import Road
-from roadproof.world.signals import OwnName, SignalName
+from roadproof.world.signals import CustomSignalName, SignalName
 from roadproof.world.vehicle import Vehicle
 
 ROUNDS = 3
@@ -31,25 +31,28 @@ ROUNDS = 3
 
 def reshape(
     problem: Problem,
-    layout: Layout,
+    layout: ColumnLayout,
     road: Road,
     vehicles: Mapping[str, Vehicle],
-    found: Sequence[float],
+    point: Sequence[float],
     objective: Objective,
     depths: Sequence[ColumnInequality] = (),
 ) -> tuple[float, ...]:
-    """A better drive than ``found`` for the same choices; ``found`` where there is none.
+    """Return column values of a better drive than ``point``, or ``point`` itself; they are not judged yet.
 
-    ``depths``: inequalities of which mild makes the values small and severe great.
+    Better is smoother, nearer to cruising speed and lane centre, and better for ``objective``.
+    Inequalities that ``implicant`` picks at ``point`` are kept, up to rounding. ``depths``: inequalities
+    whose values the objective mild makes small and severe makes great. Raises ``MissingSolverError``
+    without Clarabel.
     """
-    choices = implicant(problem.circuit, lambda inequality: value_of(inequality, found))
-    squares = list(comfort(layout, road, vehicles, found))
+    choices = implicant(problem.circuit, lambda inequality: polynomial_value(inequality, point))
+    squares = list(comfort_objective(layout, road, vehicles, point))
     widths = [_trust_column(column) for column in problem.columns]
-    best = tuple(found)
+    best = tuple(point)
     for _ in range(ROUNDS):
-        box = narrow(box_of(problem), best, widths)
+        box = trust_box(column_box(problem), best, widths)
         try:
-            bounds = [near(inequality, best, box) for inequality in choices]
+            bounds = [linearise_at(inequality, best, box) for inequality in choices]
         except TooNonlinearError:
             break
         cost = None
@@ -64,14 +67,14 @@ def reshape(
     return best
 
 
-def _trust_column(column: Column) -> float:
-    """How far a column may move in one round; an own signal over its whole range."""
+def _trust_column(column: RealColumn) -> float:
+    """Return how far a column may move in one round; a custom signal may move over its whole range."""
     signal = column.of.signal
-    return float(column.high - column.low) if isinstance(signal, OwnName) else _trust(signal)
+    return float(column.high - column.low) if isinstance(signal, CustomSignalName) else _trust(signal)
 
 
 def _trust(signal: SignalName) -> float:
-    """How far a signal may move in one round, so that squares are nearly straight."""
+    """Return how far a signal may move in one round, so that squares are nearly straight."""
     match signal:
         case "s":
             return 400.0
@@ -81,14 +84,14 @@ def _trust(signal: SignalName) -> float:
             return 4.0
         case "v_lat":
             return 0.6
-        case _:
+        case _:  # open: only signals that a drive starts with have columns
             raise ValueError(f"signal={signal}: it is not known how far it may move in one round")
 
 
-def comfort(
-    layout: Layout, road: Road, vehicles: Mapping[str, Vehicle], found: Sequence[float]
+def comfort_objective(
+    layout: ColumnLayout, road: Road, vehicles: Mapping[str, Vehicle], point: Sequence[float]
 ) -> Iterator[Square]:
-    """Little jerk and acceleration, near the middle of the lane that ``found`` is nearest to."""
+    """Yield costs of jerk, acceleration, speed off cruise and distance from the nearest lane centre."""
     steps = layout.grid.steps
     weights: Mapping[SignalName, tuple[float, float]] = {"a_lon": (1.0, 0.1), "a_lat": (1.0, 0.5)}
     for name, vehicle in vehicles.items():
@@ -100,13 +103,13 @@ def comfort(
                 yield Square(jerk, later + now.scaled(-1.0))
                 yield Square(effort, now)
         for k in range(steps + 1):
-            side = found[layout.column(name, "d", k)]
+            side = point[layout.column(name, "d", k)]
             middle = min(middles, key=lambda m: abs(m - side))
             yield Square(1.0, _affine(layout, name, "d", k) + Affine((), -middle))
             yield Square(0.002, _affine(layout, name, "v_lon", k) + Affine((), -pace))
 
 
-def _affine(layout: Layout, name: str, signal: SignalName, step: int) -> Affine:
+def _affine(layout: ColumnLayout, name: str, signal: SignalName, step: int) -> Affine:
     polynomial: Polynomial[int] = layout.state(name, signal, step)
     terms = tuple((m[0], float(c)) for m, c in polynomial.terms.items() if m)
     return Affine(terms, float(polynomial.constant))
@@ -136,55 +139,56 @@ def _depth(depths: Sequence[ColumnInequality], point: Sequence[float], sign: flo
 
 
 def violation_depths(
-    formula: Formula, vehicles: Mapping[str, Vehicle], layout: Layout, found: Sequence[float]
+    formula: Formula, vehicles: Mapping[str, Vehicle], layout: ColumnLayout, point: Sequence[float]
 ) -> tuple[ColumnInequality, ...]:
-    """By how much RSS distances fall short wherever ``found`` violates them: inequalities with that value.
+    """Return inequalities whose value is the shortfall of RSS distances wherever ``point`` violates them.
 
-    They are the comparisons with a distance in each ``rssViolation`` that is true at a sample, which
-    are those of degree 2.
+    They are the comparisons with a distance, of degree 2, in each ``rssViolation`` that is true at a sample.
     """
     depths: list[ColumnInequality] = []
     for part in subformulas(formula):
         if isinstance(part, Application) and is_violation(part.name):
             for step in range(layout.grid.steps + 1):
-                circuit = ground(unroll_at(part, layout.grid, step), vehicles, layout, NONE)
-                if evaluate(circuit, lambda inequality: value_of(inequality, found) > 0):
-                    chosen = implicant(circuit, lambda inequality: value_of(inequality, found))
+                circuit = ground_atoms(unroll_at(part, layout.grid, step), vehicles, layout, NO_MARGIN)
+                if evaluate(circuit, lambda inequality: polynomial_value(inequality, point) > 0):
+                    chosen = implicant(circuit, lambda inequality: polynomial_value(inequality, point))
                     depths += [inequality for inequality in chosen if inequality.polynomial.degree > 1]
     return tuple(depths)
 
 
 def round_drive(
-    layout: Layout,
+    layout: ColumnLayout,
     vehicles: Mapping[str, Vehicle],
     values: Sequence[float | Fraction],
     grain: Fraction | None = Fraction(1, 1000),
-    begun: Start | None = None,
+    fixed_start: Start | None = None,
 ) -> Drive:
-    """The drive with the given column values; speeds in multiples of ``grain`` m/s, None for exact.
+    """Return the drive with the given column values; speeds in multiples of ``grain`` m/s, None for exact.
 
-    What a start says to be one value is that one, whatever the grain.
+    Values that a start fixes are kept exactly, whatever the grain.
     """
-    said = {} if begun is None else begun.exact
+    fixed = {} if fixed_start is None else fixed_start.exact
 
     def rounded(value: float | Fraction, step: Fraction | None) -> Fraction:
         return Fraction(value) if step is None else round(Fraction(value) / step) * step
 
     def start(name: str, signal: SignalName) -> Fraction:
-        condition = said.get(Signal(signal, name))
+        """Return the value of a signal at time 0."""
+        condition = fixed.get(Signal(signal, name))
         if condition is not None:
             other = condition.beside
             return condition.low + (0 if other is None else start(other.vehicle, other.name))
         return rounded(values[layout.column(name, signal, 0)], None if grain is None else grain * 10)
 
     def speeds(name: str, signal: SignalName, change: SignalName) -> list[Fraction]:
+        """Return the speeds at all samples; fixed start values are kept."""
         columns = [layout.column(name, signal, k) for k in range(layout.grid.steps + 1)]
-        found = [rounded(values[column], grain) for column in columns]
-        if Signal(signal, name) in said:
-            found[0] = said[Signal(signal, name)].low
-        if Signal(change, name) in said:
-            found[1] = found[0] + said[Signal(change, name)].low * layout.grid.dt
-        return found
+        samples = [rounded(values[column], grain) for column in columns]
+        if Signal(signal, name) in fixed:
+            samples[0] = fixed[Signal(signal, name)].low
+        if Signal(change, name) in fixed:
+            samples[1] = samples[0] + fixed[Signal(change, name)].low * layout.grid.dt
+        return samples
 
     motions = {}
     for name in layout.vehicles:
@@ -199,19 +203,19 @@ def round_drive(
             _pieces(along, across, layout.grid.dt),
             vehicles[name].kind,
         )
-    return Drive(motions, _courses(layout, values, grain))
+    return Drive(motions, _custom_trajectories(layout, values, grain))
 
 
-def _courses(
-    layout: Layout, values: Sequence[float | Fraction], grain: Fraction | None
+def _custom_trajectories(
+    layout: ColumnLayout, values: Sequence[float | Fraction], grain: Fraction | None
 ) -> dict[tuple[str, str], Course]:
-    """Own signals, each constant from a sample to the next; equal neighbours are one piece."""
+    """Custom signals, each constant from a sample to the next; equal neighbours are one piece."""
     made: dict[tuple[str, str], Course] = {}
-    for own in layout.own:
+    for own in layout.custom_signals:
         name, vehicle = own.signal.name, own.signal.vehicle
         course: list[tuple[Fraction, Fraction]] = []
         for step in range(layout.grid.steps + 1):
-            value = Fraction(values[layout.own_column(vehicle, name, step)])
+            value = Fraction(values[layout.custom_signal_column(vehicle, name, step)])
             if own.signal.truth:
                 value = Fraction(value > HALF)
             elif grain is not None:

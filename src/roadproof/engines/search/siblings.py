@@ -1,44 +1,39 @@
-"""Scenarios that differ only in their road sectors: the drive of the first is offered for the others.
+"""Reuses drives between scenarios that differ only in their road sectors.
 
-An offer asks no solver: the drive is put on the road of the other scenario, and judged there. So ``witness``
-finds the same drive for a scenario whether it is asked for alone or with others.
+Reuse needs no solver: the drive of the first scenario is put on the road of the other and judged there.
+So ``witness`` finds the same drive for a scenario whether it runs alone or with others.
 """
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from roadproof.engines.encode.build import surroundings
-from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.build import road_constraints
+from roadproof.engines.encode.motion import ColumnLayout
 from roadproof.engines.encode.problem import evaluate
-from roadproof.engines.search.question import (
-    FoundDrive,
-    SearchOptions,
-    SearchProblem,
-    Setting,
-    pose,
-    zones_of,
-)
-from roadproof.engines.solve.bounds import value_of
+from roadproof.engines.search.question import FoundDrive, SearchProblem, pose
+from roadproof.engines.search.usual_road import zones_of
+from roadproof.engines.setting import SearchOptions, Setting
+from roadproof.engines.solve.bounds import polynomial_value
 from roadproof.errors import InputError, UsageError
-from roadproof.library.alike import like_of
-from roadproof.library.scenarios import Scenario, applied
+from roadproof.library.scenarios import Scenario, apply_scenario
+from roadproof.library.sector_twins import sector_twin
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.rewrite import parameters_of
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from roadproof.world.motion import states_at
 from roadproof.world.signals import STARTING
 
 if TYPE_CHECKING:
-    from roadproof.engines.search.search import Attempt
+    from roadproof.engines.search.search import SearchStep
 
 ROUNDED = 0.01  # m and m/s; by how much a drive of rounded numbers may miss what it was looked for under
 MOST = 64  # of the searches whose outcome a process remembers
 
-_remembered: dict[object, "Attempt"] = {}
+_remembered: dict[object, "SearchStep"] = {}
 
 
-def find_once(question: SearchProblem, search_options: SearchOptions) -> "Attempt":
-    """As ``find_witness``; a process searches once for equal formulas, of several spec sets too.
+def find_once(question: SearchProblem, search_options: SearchOptions) -> "SearchStep":
+    """Run ``find_witness`` with a cache: one search for equal formulas, also of several spec sets.
 
     Only for questions on the usual road, which have no start.
     """
@@ -62,56 +57,60 @@ def _key(question: SearchProblem, search_options: SearchOptions) -> object:
     return bound, place, tuple(spoken.items()), search_options
 
 
-def offered(
+def drive_of_twin(
     specification: Specification,
     number: int,
     question: SearchProblem,
     setting: Setting,
     search_options: SearchOptions,
-) -> "Attempt | None":
-    """The drive of the first scenario that differs in its road sector only, judged for this one.
+) -> "SearchStep | None":
+    """Return the drive of the first scenario that differs only in its road sector, judged for this question.
 
-    None where there is no such scenario, where it cannot be asked for with this ``setting`` or is about other
-    vehicles, and where its drive does not answer this question. Raises ``MissingSolverError``,
-    ``BudgetExceeded``.
+    None where no such scenario exists, where it cannot be posed with this ``setting`` or has other vehicles,
+    and where its drive does not answer this question. Raises ``MissingSolverError``, ``BudgetExceeded``.
     """
-    first = _first(specification, number, question.query, setting)
+    first = _first_twin(specification, number, question.query, setting)
     if first is None:
         return None
     try:
-        asked = pose(specification.library, applied(specification, first), setting)
-        if asked.vehicles != question.vehicles:
+        twin_question = pose(specification.library, apply_scenario(specification, first), setting)
+        if twin_question.vehicles != question.vehicles:
             return None
-        attempt = find_once(asked, search_options)
+        attempt = find_once(twin_question, search_options)
     except (InputError, UsageError):
         return None
-    put = None if attempt.found is None else put_on(question, attempt.found)
-    return None if put is None else replace(attempt, found=put)
+    put = None if attempt.witness is None else move_to_road(question, attempt.witness)
+    return None if put is None else replace(attempt, witness=put)
 
 
-def _first(specification: Specification, number: int, query: Query, setting: Setting) -> Scenario | None:
+def _first_twin(specification: Specification, number: int, query: Query, setting: Setting) -> Scenario | None:
     """The scenario that is asked first; None on the main road, and where road or lanes are chosen."""
     if setting.road is not None or setting.lanes or zones_of(query.formula) <= {"main"}:
         return None
-    first = like_of(specification, number)
+    first = sector_twin(specification, number)
     return None if first == number else Scenario(first, specification.set_name)
 
 
-def put_on(question: SearchProblem, found: FoundDrive) -> FoundDrive | None:
-    """The drive on the road of ``question``, where it answers that under the same assumptions; else None."""
-    if found.lanes not in question.lanes or not _keeps(question, found):
+def move_to_road(question: SearchProblem, candidate: FoundDrive) -> FoundDrive | None:
+    """Return the candidate with the formula of ``question``, or None where its drive does not answer that.
+
+    The drive stays as it is. It must satisfy the formula, and its lanes must be a choice of the question.
+    At samples it must keep that road and the candidate's own assumptions, up to ``ROUNDED``. Both must
+    have the same vehicles, which is not checked.
+    """
+    if candidate.lanes not in question.lanes or not _keeps(question, candidate):
         return None
-    formula = question.bound(found.lanes)
-    return replace(found, formula=formula) if judge(formula, found.drive).holds else None
+    formula = question.bound(candidate.lanes)
+    return replace(candidate, formula=formula) if judge(formula, candidate.drive).holds else None
 
 
-def _keeps(question: SearchProblem, found: FoundDrive) -> bool:
-    """Whether the drive is on the road, apart and in lanes as the assumptions say, but for rounding."""
-    layout = Layout(tuple(question.vehicles), found.grid)
-    times = [step * found.grid.dt for step in range(found.grid.steps + 1)]
+def _keeps(question: SearchProblem, candidate: FoundDrive) -> bool:
+    """Return whether the drive keeps road, clearance and lanes as assumed, up to rounding."""
+    layout = ColumnLayout(tuple(question.vehicles), candidate.grid)
+    times = [step * candidate.grid.dt for step in range(candidate.grid.steps + 1)]
     values: list[float] = []
     for name in layout.vehicles:
-        states = states_at(found.drive.vehicles[name], times)
+        states = states_at(candidate.drive.vehicles[name], times)
         values += [float(getattr(state, signal)) for signal in STARTING for state in states]
-    around = surroundings(question.road, question.vehicles, layout, found.assumptions)
-    return all(evaluate(part, lambda x: value_of(x, values) >= -ROUNDED) for part in around)
+    around = road_constraints(question.road, question.vehicles, layout, candidate.assumptions)
+    return all(evaluate(part, lambda x: polynomial_value(x, values) >= -ROUNDED) for part in around)

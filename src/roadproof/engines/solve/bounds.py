@@ -1,19 +1,28 @@
-"""Certified bounds of polynomials on boxes, and affine conditions on the safe side of them.
+"""Certified affine bounds of polynomial inequalities on boxes.
 
-``inner``: conditions under which an inequality surely holds, so that what a solver finds is a solution of
-the exact problem. ``outer``: conditions that hold wherever the inequality does, so that when a solver
-finds nothing there is nothing. Squares are convex: a tangent is below, a secant above on its window;
-a product is the difference of two squares (McCormick's relaxation in other words: Math.
-Programming 10, 1976). All in floating point: solutions are judged exactly elsewhere, and conditions on
-the outer side are loosened by more than rounding and a solver's tolerance can take away.
+``inner``: sufficient conditions, so a solver's solution solves the exact problem. ``outer``: necessary
+conditions, so an infeasible relaxation shows that the exact problem has no solution. Squares are convex:
+a tangent lies below, a secant above on its window; a product is a difference of two squares (equivalent to
+McCormick's relaxation, Math. Programming 10, 1976). Arithmetic is floating point: solutions are judged
+exactly elsewhere, and outer conditions are loosened beyond rounding and solver tolerances.
 """
 
 from collections.abc import Sequence
+from dataclasses import field, replace
 from itertools import pairwise, product
 from math import prod
 from typing import Literal, TypeAlias
 
-from roadproof.engines.encode.problem import All, AnyOf, Circuit, ColumnInequality, Leaf, all_of, any_of
+from roadproof.engines.encode.problem import (
+    All,
+    AnyOf,
+    Circuit,
+    ColumnInequality,
+    Leaf,
+    Origin,
+    all_of,
+    any_of,
+)
 from roadproof.runtime.records import dataclass
 
 Side: TypeAlias = Literal["inner", "outer"]
@@ -32,7 +41,7 @@ class TooNonlinearError(Exception):
 
 @dataclass(frozen=True)
 class Affine:
-    """Σ coefficient · column + constant."""
+    """An affine form Σ coefficient · column + constant."""
 
     terms: tuple[tuple[int, float], ...]
     constant: float
@@ -47,7 +56,7 @@ class Affine:
         return Affine(tuple((c, k * factor) for c, k in self.terms), self.constant * factor)
 
     def range(self, box: Box) -> tuple[float, float]:
-        """Least and greatest value on a box."""
+        """Return the least and greatest value on a box."""
         low = high = self.constant
         for column, factor in self.terms:
             one, other = factor * box[column][0], factor * box[column][1]
@@ -55,7 +64,7 @@ class Affine:
         return low, high
 
     def looseness(self, box: Box) -> float:
-        """What an outer condition on this has to be loosened by."""
+        """Return the slack that covers rounding and solver tolerance of an outer condition on this form."""
         parts = (abs(factor) * max(abs(end) for end in box[column]) for column, factor in self.terms)
         return TOLERANCE + ROUNDING * (abs(self.constant) + sum(parts))
 
@@ -65,14 +74,15 @@ class Affine:
 
 @dataclass(frozen=True)
 class Bound:
-    """``affine >= margin``."""
+    """A condition ``affine >= margin``; ``origin``: what it encodes."""
 
     affine: Affine
     margin: float = 0.0
+    origin: Origin | None = field(default=None, compare=False)
 
 
 def split_squares(inequality: ColumnInequality) -> tuple[Affine, tuple[tuple[float, Affine], ...]]:
-    """A polynomial of degree at most 2 as an affine part and multiples of squares of affine forms.
+    """Split a polynomial of degree at most 2 into an affine part and multiples of squares of affine forms.
 
     Raises ``TooNonlinearError`` above degree 2.
     """
@@ -96,10 +106,12 @@ def split_squares(inequality: ColumnInequality) -> tuple[Affine, tuple[tuple[flo
     return Affine(tuple(terms.items()), constant), tuple(squares)
 
 
-def approximate(inequality: ColumnInequality, box: Box, side: Side, pieces: int = 1) -> Circuit[Bound]:
-    """Affine conditions for ``inequality`` on ``box``, on the given side of it.
+def affine_bounds(inequality: ColumnInequality, box: Box, side: Side, pieces: int = 1) -> Circuit[Bound]:
+    """Return affine conditions that imply ``inequality`` on ``box`` (inner) or follow from it (outer).
 
-    ``pieces``: number of tangents and of secant windows per square; 1 needs no choice between them.
+    Outer conditions are loosened beyond rounding. Inner ones keep the margin; without it, strict becomes
+    ``>=``. ``pieces``: number of tangents or secant windows per square (a product is two squares). With
+    more than 1, the result has alternatives. Raises ``TooNonlinearError`` above degree 2.
     """
     linear, squares = split_squares(inequality)
     options = [_square(factor, form, box, side, pieces) for factor, form in squares]
@@ -110,12 +122,13 @@ def approximate(inequality: ColumnInequality, box: Box, side: Side, pieces: int 
         for bounds, _ in chosen:
             totals = [total + bound for total in totals for bound in bounds]
         leaves = [_leaf(total, inequality, box, side) for total in totals]
-        cases.append(all_of([*(Leaf(c) for c in conditions), *leaves]))
+        windows = (Leaf(replace(c, origin=inequality.origin)) for c in conditions)
+        cases.append(all_of([*windows, *leaves]))
     return any_of(cases)
 
 
 def loosened(box: Box) -> list[tuple[float, float]]:
-    """A box with every point of ``box`` well inside it, but for columns that have one value only."""
+    """Return a slightly larger box, so every point of ``box`` is well inside; single values stay."""
     return [
         (low, high)
         if low == high
@@ -129,9 +142,9 @@ Piece: TypeAlias = tuple[tuple[Affine, ...], tuple[Bound, ...]]
 
 
 def _square(factor: float, form: Affine, box: Box, side: Side, pieces: int) -> list[Piece]:
-    """Affine bounds of ``factor·form²`` on a side, to choose from.
+    """Return alternative affine bounds of ``factor·form²`` on a side, each with the window where it is valid.
 
-    On the inner side each tangent alone will do; on the outer side all of them are asked for.
+    On the inner side one tangent is enough; on the outer side all of them must hold.
     """
     low, high = form.range(box)
     if high - low < 1e-12:
@@ -151,20 +164,26 @@ def _square(factor: float, form: Affine, box: Box, side: Side, pieces: int) -> l
 
 
 def _leaf(affine: Affine, inequality: ColumnInequality, box: Box, side: Side) -> Circuit[Bound]:
-    """The condition, or true or false where the box decides it."""
+    """Return the condition, or true or false where the box decides it."""
     low, high = affine.range(box)
     if side == "outer":
         slack = affine.looseness(box)
-        return All(()) if low >= 0 else AnyOf(()) if high < -slack else Leaf(Bound(affine, -slack))
+        return (
+            All(())
+            if low >= 0
+            else AnyOf(())
+            if high < -slack
+            else Leaf(Bound(affine, -slack, inequality.origin))
+        )
     if low > 0 or (low == 0 and not inequality.strict):
         return All(())
     if high < 0 or (high == 0 and inequality.strict):
         return AnyOf(())
-    return Leaf(Bound(affine, float(inequality.margin)))
+    return Leaf(Bound(affine, float(inequality.margin), inequality.origin))
 
 
-def value_of(inequality: ColumnInequality, values: Sequence[float]) -> float:
-    """The value of the polynomial of an inequality where ``values`` gives that of each column."""
+def polynomial_value(inequality: ColumnInequality, values: Sequence[float]) -> float:
+    """Return the value of an inequality's polynomial at the given column values."""
     total = 0.0
     for monomial, coefficient in inequality.polynomial.terms.items():
         total += prod((values[column] for column in monomial), start=float(coefficient))

@@ -1,7 +1,9 @@
-"""Mixed-integer programs for HiGHS, without a modelling layer between."""
+"""Solves mixed-integer programs with HiGHS directly, without a modelling layer."""
 
+import tempfile
 from collections.abc import Mapping, Sequence
-from typing import Any
+from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 
@@ -10,10 +12,10 @@ from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)
-class Program:
-    """``low <= matrix · x <= high`` with x in ``box``, a bound pair a column; ``binaries`` are 0 or 1.
+class MixedIntegerProgram:
+    """The feasibility problem ``low <= matrix · x <= high``, ``box[:, 0] <= x <= box[:, 1]``.
 
-    ``rows``, ``columns`` and ``values`` are the entries of the matrix. Any solution will do.
+    ``rows``, ``columns`` and ``values`` are the entries of the matrix; ``binaries`` are columns of 0 or 1.
     """
 
     rows: Any
@@ -26,23 +28,23 @@ class Program:
 
     @property
     def equal(self) -> Any:
-        """Which rows are equations."""
+        """The mask of rows that are equations."""
         return self.low == self.high
 
     @property
     def above(self) -> Any:
-        """Which rows are no equations, and bounded from below."""
+        """The mask of rows that are no equations and have a lower bound."""
         return ~self.equal & np.isfinite(self.low)
 
     @property
     def below(self) -> Any:
-        """Which rows are no equations, and bounded from above."""
+        """The mask of rows that are no equations and have an upper bound."""
         return ~self.equal & np.isfinite(self.high)
 
 
 @dataclass(frozen=True)
-class Answer:
-    """A solver's status in cvxpy's words, "" for any failure; values of the columns, and its work."""
+class SolverReply:
+    """A solver's reply: status in cvxpy's words ("" for any failure), column values, and its work."""
 
     status: str
     values: Any = None
@@ -64,8 +66,8 @@ _STATUSES = {
 }
 
 
-def solve(program: Program, options: Mapping[str, object]) -> Answer:
-    """The answer of HiGHS with these options. Raises ``ValueError`` for an option that it does not know."""
+def solve(program: MixedIntegerProgram, options: Mapping[str, object]) -> SolverReply:
+    """Run HiGHS with these options. Raises ``ValueError`` for an option that HiGHS does not take."""
     import highspy
 
     made: Any = highspy.Highs
@@ -76,18 +78,45 @@ def solve(program: Program, options: Mapping[str, object]) -> Answer:
     solver.passModel(_model(program, highspy))
     solver.run()
     info, status = solver.getInfo(), _STATUSES.get(solver.getModelStatus().name, "")
-    found = solver.getSolution() if status in ("optimal", "user_limit") else None
-    values = np.array(found.col_value) if found is not None else None
-    return Answer(status, values, info.mip_node_count, info.simplex_iteration_count)
+    solution = solver.getSolution() if status in ("optimal", "user_limit") else None
+    values = np.array(solution.col_value) if solution is not None else None
+    return SolverReply(status, values, info.mip_node_count, info.simplex_iteration_count)
 
 
-def _model(program: Program, highspy: Any) -> Any:
-    """Equations first, then rows bounded from below as ones from above, then those bounded from above."""
+def model_text(
+    program: MixedIntegerProgram, columns: Sequence[str], rows: Sequence[str], ending: Literal["mps", "lp"]
+) -> str:
+    """Return the program as a file with names of ``columns`` and ``rows``: free MPS, or LP."""
+    import highspy
+
+    made: Any = highspy.Highs
+    solver = made()
+    solver.setOptionValue("output_flag", False)
+    entries = program.rows, program.columns, program.values
+    matrix = by_columns(*entries, (len(program.low), len(program.box)))
+    model = _linear_program(program, matrix, program.low, program.high, highspy)
+    model.col_names_, model.row_names_ = [*columns], [*rows]
+    solver.passModel(model)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"model.{ending}"
+        if solver.writeModel(str(path)) == highspy.HighsStatus.kError:
+            raise RuntimeError(f"HiGHS does not write a model with the ending {ending}")
+        return path.read_text("ascii")
+
+
+def _model(program: MixedIntegerProgram, highspy: Any) -> Any:
+    """Return the HiGHS model: equations first, then rows bounded below (negated), then rows bounded above."""
     equal, above, below = program.equal, program.above, program.below
     matrix = _matrix(program, [(equal, 1.0), (above, -1.0), (below, 1.0)])
     right = np.concatenate([program.low[equal], -program.low[above], program.high[below]])
     left = np.full(len(right), -np.inf)
     left[: int(equal.sum())] = program.low[equal]
+    return _linear_program(program, matrix, left, right, highspy)
+
+
+def _linear_program(
+    program: MixedIntegerProgram, matrix: Columns, left: Any, right: Any, highspy: Any
+) -> Any:
     lp = highspy.HighsLp()
     lp.num_row_, lp.num_col_ = matrix.shape
     lp.col_cost_ = np.zeros(lp.num_col_)
@@ -103,8 +132,8 @@ def _model(program: Program, highspy: Any) -> Any:
     return lp
 
 
-def _matrix(program: Program, parts: Sequence[tuple[Any, float]]) -> Columns:
-    """The rows that each part chooses, times its factor, one part below the other."""
+def _matrix(program: MixedIntegerProgram, parts: Sequence[tuple[Any, float]]) -> Columns:
+    """Return the rows that each part selects, times its factor, one part below the other."""
     rows, columns, values, total = [], [], [], 0
     for chosen, factor in parts:
         inside = chosen[program.rows]

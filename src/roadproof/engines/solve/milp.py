@@ -1,8 +1,6 @@
-"""Mixed-integer solvers, HiGHS and through cvxpy others: one sparse matrix constraint, one-sided big-M.
+"""Solves problems with mixed-integer solvers: HiGHS directly, others through cvxpy.
 
-A disjunction gets one binary column per part, and a chosen part must hold; nothing follows from a
-part that is not chosen, so no condition is needed in the other direction. Each big-M is the bound of
-its own condition on the box. ``cvxpy`` is imported here only.
+Only this module imports ``cvxpy``.
 """
 
 import gc
@@ -10,28 +8,19 @@ import math
 import re
 import sys
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from importlib.util import find_spec
 from types import ModuleType
-from typing import Any, assert_never
+from typing import Any
 
 import numpy as np
 
-from roadproof.engines.encode.problem import (
-    All,
-    AnyOf,
-    Circuit,
-    Leaf,
-    Problem,
-    Solution,
-    nodes,
-    replace_leaves,
-)
+from roadproof.engines.encode.problem import ColumnValues, Problem
 from roadproof.engines.solve import highs
-from roadproof.engines.solve.bounds import Affine, Bound, Box, Side, approximate, loosened
-from roadproof.engines.solve.highs import Answer, Program
-from roadproof.engines.solve.sparse import Triplets
+from roadproof.engines.solve.big_m import encode_mixed
+from roadproof.engines.solve.bounds import Box, Side
+from roadproof.engines.solve.highs import MixedIntegerProgram, SolverReply
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.runtime.budget import Budget, Effort
 from roadproof.runtime.records import dataclass
@@ -49,8 +38,8 @@ TOLERANCE = 1e-4  # of a row or a bound, relative to its size
 
 
 @dataclass(frozen=True)
-class Limits:
-    """``units`` of work, ``seconds`` as a backstop, and ``gap``: how far from the best an answer may be."""
+class WorkLimits:
+    """The limits of a run: ``units`` of work, ``seconds`` as a backstop, ``gap`` to the best objective."""
 
     units: float
     seconds: float
@@ -63,14 +52,11 @@ class Limits:
 
 @dataclass(frozen=True)
 class SolverFacts:
-    """What we know of a solver: cvxpy's name for it, the module it needs, its options.
-
-    The name is None where the solver is asked without cvxpy.
-    """
+    """The entry of a solver: its cvxpy name (None: called directly), the module it needs, its options."""
 
     cvxpy_name: str | None
     module: str
-    options: Callable[[Limits], Mapping[str, object]]
+    options: Callable[[WorkLimits], Mapping[str, object]]
 
 
 SOLVERS: Mapping[str, SolverFacts] = {
@@ -144,10 +130,13 @@ OLDEST_CVXPY = (1, 9, 2)
 
 
 def find_solver(name: str) -> SolverFacts:
-    """Raises ``UsageError`` for an unknown name, ``MissingSolverError`` where it is not installed."""
+    """Return the entry of a solver.
+
+    Raises ``UsageError`` for an unknown name, ``MissingSolverError`` where it is not installed.
+    """
     if name not in SOLVERS:
         raise UsageError(f"solver={name}: unknown solver; choose one of {', '.join(sorted(SOLVERS))}")
-    needed = ["cvxpy"] if SOLVERS[name].cvxpy_name is not None else []
+    needed = ("cvxpy",) if SOLVERS[name].cvxpy_name is not None else ()
     for module in (*needed, SOLVERS[name].module):
         if find_spec(module) is None:
             raise MissingSolverError(
@@ -164,119 +153,51 @@ def solve_mixed(
     pieces: int = 1,
     solver: str = "highs",
     meter: Budget | None = None,
-) -> Solution:
-    """A solution of ``problem`` in ``box`` (a bound pair per column), within what ``meter`` has left.
+) -> ColumnValues:
+    """Solve ``problem`` in ``box`` (a bound pair per column) within what ``meter`` has left.
 
-    On the inner side a solution solves the exact problem up to floating point; on the outer side
-    ``infeasible`` says that the exact problem has no solution: whatever is no equation is loosened by
-    more than the solver's tolerances, and equations leave room to keep them. Raises
-    ``TooNonlinearError`` for inequalities above degree 2, ``BudgetExceeded``, and as ``find_solver`` does.
+    On the inner side a solution solves the exact problem up to floating point. On the outer side
+    ``infeasible`` shows that the exact problem has no solution: all but equations is loosened by more than
+    the solver's tolerances. Raises ``TooNonlinearError`` above degree 2, ``BudgetExceeded``, and the errors
+    of ``find_solver``.
     """
     known = find_solver(solver)
     meter = meter or Effort().meter()
-    if meter.is_out():
-        return Solution("unknown")
-    box = loosened(box) if side == "outer" else box
-    circuit = replace_leaves(problem.circuit, lambda inequality: approximate(inequality, box, side, pieces))
-    tableau = _Tableau(list(box))
-    for row in problem.rows:
-        affine = Affine(tuple((c, float(k)) for c, k in row.terms.items()), 0.0)
-        slack = affine.looseness(box) if side == "outer" and row.low != row.high else 0.0
-        low = -np.inf if row.low is None else float(row.low) - slack
-        high = np.inf if row.high is None else float(row.high) + slack
-        tableau.add(affine.terms, low, high)
-    tableau.require(circuit)
-    return _run(tableau, len(problem.columns), known, meter)
+    if meter.is_exhausted():
+        return ColumnValues("unknown")
+    program = encode_mixed(problem, box, side, pieces).program
+    return _solve_program(program, len(problem.columns), known, meter)
 
 
-class _Tableau:
-    """Rows and binary columns, written as triplets."""
-
-    def __init__(self, box: list[tuple[float, float]]) -> None:
-        self.box = box
-        self.binaries: list[int] = []
-        self.entries = Triplets()
-        self.high: list[float] = []
-
-    def add(self, terms: Sequence[tuple[int, float]], low: float, high: float) -> None:
-        self.entries.add(terms, low)
-        self.high.append(high)
-
-    def binary(self) -> int:
-        self.box.append((0.0, 1.0))
-        self.binaries.append(len(self.box) - 1)
-        return self.binaries[-1]
-
-    def require(self, circuit: Circuit[Bound]) -> None:
-        """Rows for ``circuit``; ``chosen`` holds for each part of a disjunction its binary."""
-        chosen: dict[int, int] = {}
-        top: list[Circuit[Bound]] = list(circuit.parts) if isinstance(circuit, All) else [circuit]
-        for node in nodes(circuit):
-            if isinstance(node, AnyOf):
-                for part in node.parts:
-                    if id(part) not in chosen:
-                        chosen[id(part)] = self.binary()
-        waiting: list[tuple[Circuit[Bound], int | None]] = [(part, None) for part in top]
-        waiting += [(n, chosen[id(n)]) for n in nodes(circuit) if id(n) in chosen]
-        for node, guard in waiting:
-            self._hold(node, guard, chosen)
-
-    def _hold(self, node: Circuit[Bound], guard: int | None, chosen: Mapping[int, int]) -> None:
-        """``node`` holds, if the guard is 1 where there is one."""
-        match node:
-            case Leaf(bound):
-                self._bound(bound.affine, guard, bound.margin)
-            case All(parts):
-                for part in parts:
-                    self._hold(part, guard, chosen)
-            case AnyOf(parts):
-                picks = [(chosen[id(p)], 1.0) for p in parts]
-                if guard is None:
-                    self.add(picks, 1.0, np.inf)
-                else:
-                    self.add([*picks, (guard, -1.0)], 0.0, np.inf)
-            case _:
-                assert_never(node)
-
-    def _bound(self, affine: Affine, guard: int | None, margin: float) -> None:
-        """affine >= margin, relaxed by its own least value where the guard is 0."""
-        least = margin - affine.constant
-        if guard is None:
-            self.add(affine.terms, least, np.inf)
-            return
-        slack = max(0.0, margin - affine.range(self.box)[0])
-        self.add([*affine.terms, (guard, -slack)], least - slack, np.inf)
-
-
-def _run(tableau: _Tableau, wanted: int, known: SolverFacts, meter: Budget) -> Solution:
-    low, high, box = np.array(tableau.entries.right), np.array(tableau.high), np.array(tableau.box)
-    program = Program(*tableau.entries.arrays(), low, high, box, tableau.binaries)
-    allowed = Limits(meter.left(), meter.seconds_left(), GAP)
+def _solve_program(
+    program: MixedIntegerProgram, count: int, known: SolverFacts, meter: Budget
+) -> ColumnValues:
+    allowed = WorkLimits(meter.left(), meter.seconds_left(), GAP)
     answer = _solve(program, known, allowed)
     meter.spend(_spent(answer, allowed))
     if answer.status in INFEASIBLE:
-        return Solution("infeasible")
+        return ColumnValues("infeasible")
     if answer.status != "optimal":
         # What is there when the clock ends the search depends on the machine, so nobody may see it.
         meter.seconds_left()
     values = answer.values
     if values is None or not _fits(values, program):
-        return Solution("unknown")
-    return Solution("found", tuple(float(v) for v in values[:wanted]))
+        return ColumnValues("unknown")
+    return ColumnValues("found", tuple(float(v) for v in values[:count]))
 
 
-def _solve(program: Program, known: SolverFacts, allowed: Limits) -> Answer:
-    """A solver's answer: only the statuses of ``INFEASIBLE`` say that there is no solution."""
+def _solve(program: MixedIntegerProgram, known: SolverFacts, allowed: WorkLimits) -> SolverReply:
+    """Return a solver's reply; only the statuses of ``INFEASIBLE`` show that there is no solution."""
     options = known.options(allowed)
     if known.cvxpy_name is None:
         return highs.solve(program, options)
     return _through_cvxpy(program, known.cvxpy_name, options)
 
 
-def _through_cvxpy(program: Program, solver: str, options: Mapping[str, object]) -> Answer:
+def _through_cvxpy(program: MixedIntegerProgram, solver: str, options: Mapping[str, object]) -> SolverReply:
     from scipy.sparse import csr_array
 
-    cvxpy = modelling()
+    cvxpy = import_cvxpy()
     box, count = program.box, len(program.box)
     shape = len(program.low), count
     matrix = csr_array((program.values, (program.rows, program.columns)), shape=shape)
@@ -288,31 +209,31 @@ def _through_cvxpy(program: Program, solver: str, options: Mapping[str, object])
         constraints.append(matrix[above] @ x >= program.low[above])
     if below.any():
         constraints.append(matrix[below] @ x <= program.high[below])
-    asked = cvxpy.Problem(cvxpy.Minimize(np.zeros(count) @ x), constraints)
+    model = cvxpy.Problem(cvxpy.Minimize(np.zeros(count) @ x), constraints)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # an answer that may be inaccurate is judged anyway
-            asked.solve(solver=solver, **options)
+            model.solve(solver=solver, **options)
     except cvxpy.error.SolverError:
-        return Answer("")
+        return SolverReply("")
     except ValueError as error:
         if "Cannot unpack invalid solution" in str(error):  # a status of the solver that cvxpy does not know
-            return Answer("")
+            return SolverReply("")
         raise
-    stats = asked.solver_stats.extra_stats if asked.solver_stats is not None else None
+    stats = model.solver_stats.extra_stats if model.solver_stats is not None else None
     nodes = int(stats.get("mip_node_count") or 0) if isinstance(stats, dict) else 0
-    return Answer(str(asked.status), x.value, nodes)
+    return SolverReply(str(model.status), x.value, nodes)
 
 
-def _spent(answer: Answer, allowed: Limits) -> float:
-    """The units that a solver has worked; all that were allowed where it came to no end."""
+def _spent(answer: SolverReply, allowed: WorkLimits) -> float:
+    """Return the units that a solver has worked; all that were allowed where it did not finish."""
     if answer.status != "optimal" and answer.status not in INFEASIBLE:
         return allowed.units
     return max(answer.iterations / ITERATIONS_A_UNIT, answer.nodes / NODES_A_UNIT)
 
 
-def _fits(x: Any, program: Program) -> bool:
-    """Whether ``x`` is a solution at all: solvers that reach a limit may hand out what they have."""
+def _fits(x: Any, program: MixedIntegerProgram) -> bool:
+    """Return whether ``x`` is a solution: at a limit, solvers may return points that are none."""
     low, high, limits = program.low, program.high, program.box
     rows = np.bincount(program.rows, weights=program.values * x[program.columns], minlength=len(low))
     within = np.concatenate([x - limits[:, 0], limits[:, 1] - x, rows - low, high - rows])
@@ -320,20 +241,19 @@ def _fits(x: Any, program: Program) -> bool:
     return bool(np.all(within >= -TOLERANCE * (1 + np.where(np.isfinite(size), size, 0))))
 
 
-def prepare() -> None:
-    """Import HiGHS and what shapes drives now, not at the first question, for processes to be forked."""
+def preload_solvers() -> None:
+    """Import HiGHS and Clarabel now, before processes are forked."""
     usual, *_ = SOLVERS.values()
     for module in (usual.module, "clarabel"):
         if find_spec(module) is not None:
             import_module(module)
 
 
-def modelling() -> Any:
-    """cvxpy, without all of scipy.stats: that is most of its import, for one function that nobody here needs.
+def import_cvxpy() -> Any:
+    """Import cvxpy without scipy.stats, which is most of its import time for one function that we never need.
 
-    cvxpy gets a function in its place that imports scipy.stats when it is called. Raises
-    ``MissingSolverError`` where its version is before 1.9.2: it then loses bounds of a variable of which some
-    entries are binary, and calls problems infeasible that are not.
+    cvxpy gets a stand-in that imports scipy.stats when it is called. Raises ``MissingSolverError`` before
+    version 1.9.2, which loses bounds of partly binary variables and calls feasible problems infeasible.
     """
     if "cvxpy" not in sys.modules and _STATISTICS not in sys.modules:
         known = {*sys.modules}
@@ -359,6 +279,6 @@ def modelling() -> Any:
     return cvxpy
 
 
-def box_of(problem: Problem) -> list[tuple[float, float]]:
-    """The bounds of a problem's columns as floats."""
+def column_box(problem: Problem) -> list[tuple[float, float]]:
+    """Return the bounds of a problem's columns as floats."""
     return [(float(c.low), float(c.high)) for c in problem.columns]

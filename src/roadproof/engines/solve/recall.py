@@ -1,8 +1,8 @@
-"""Sessions that ask z3 only what this process has not asked it before, whatever symbols are called.
+"""z3 sessions that reuse replies of this process, whatever the symbols are called.
 
-z3 answers alike to the same words, so an answer after all that a session has been told may be taken from one
-that was told the same. Symbols in bars, of which claims about several road sectors have other ones, are
-numbered as they are met. An answer depends on no other session: it is what z3 would say, and its work counts.
+z3 gives the same reply to the same text. So a reply may be reused where everything sent before it agrees.
+Symbols in bars, which differ between claims about road sectors, are numbered as they occur. The work of a
+reused reply counts in full, so no answer depends on other sessions.
 """
 
 import hashlib
@@ -10,7 +10,14 @@ import re
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from roadproof.engines.solve.smt import NO_LIMITS, UNIT, Satisfiability, Session, answer_in, counted_in
+from roadproof.engines.solve.smt import (
+    NO_LIMITS,
+    UNIT,
+    Satisfiability,
+    Session,
+    parse_satisfiability,
+    resource_count,
+)
 from roadproof.runtime.budget import Budget
 
 _SYMBOL = re.compile(r"\|[^|]*\|")
@@ -18,7 +25,7 @@ _MOST_CHARACTERS = 32_000_000
 
 
 class Replies:
-    """What z3 has printed, by a digest of all that it was told until then."""
+    """The replies of z3 by a digest of all text sent before them."""
 
     def __init__(self) -> None:
         self._known: dict[bytes, str] = {}
@@ -27,20 +34,20 @@ class Replies:
     def find(self, key: bytes) -> str | None:
         return self._known.get(key)
 
-    def keep(self, key: bytes, said: str) -> None:
-        """Keep a reply; where there are too many, all others are forgotten."""
-        self._characters += len(said)
+    def store(self, key: bytes, reply: str) -> None:
+        """Store a reply; when too much is stored, all others are dropped."""
+        self._characters += len(reply)
         if self._characters > _MOST_CHARACTERS:
             self._known.clear()
-            self._characters = len(said)
-        self._known[key] = said
+            self._characters = len(reply)
+        self._known[key] = reply
 
 
 REPLIES = Replies()
 
 
 class RecallingSession(Session):
-    """A session whose replies are recalled where z3 has given them before."""
+    """A session that reuses stored replies of z3."""
 
     def __init__(self, unit: int = UNIT) -> None:
         self._names: dict[str, str] = {}
@@ -60,38 +67,38 @@ class RecallingSession(Session):
         self._digest.update(b"\n")
         self._waiting.append(short)
 
-    def _numbered(self, found: re.Match[str]) -> str:
-        return self._names.setdefault(found[0], f"|{len(self._names)}|")
+    def _numbered(self, match: re.Match[str]) -> str:
+        return self._names.setdefault(match[0], f"|{len(self._names)}|")
 
     def _reply(self, question: str, limits: str = "", most: int | None = None) -> str:
         self._count(limits + question)
         self._note(question)
         key = self._digest.digest()
-        said = REPLIES.find(key) if self._recalls else None
-        if said is not None and (most is None or counted_in(said) - self._counted <= most):
+        reply = REPLIES.find(key) if self._recalls else None
+        if reply is not None and (most is None or resource_count(reply) - self._counted <= most):
             self._is_behind = True
-            return said
+            return reply
         if self._is_behind:
             self._run(NO_LIMITS + "\n".join(self._waiting[:-1]))
             del self._waiting[:-1]
-        said = self._run(limits + "\n".join(self._waiting))
+        reply = self._run(limits + "\n".join(self._waiting))
         self._waiting.clear()
         self._is_behind = False
-        self._recalls = self._recalls and not (limits and answer_in(said) == "unknown")
+        self._recalls = self._recalls and not (limits and parse_satisfiability(reply) == "unknown")
         if self._recalls:
-            REPLIES.keep(key, said)
-        return said
+            REPLIES.store(key, reply)
+        return reply
 
 
-def ask(script: str, meter: Budget) -> Satisfiability:
-    """The answer of z3 to a whole script that ends in ``check-sat``. Raises ``BudgetExceeded``."""
+def check_sat(script: str, meter: Budget) -> Satisfiability:
+    """Return z3's answer to a whole script that ends in ``check-sat``. Raises ``BudgetExceeded``."""
     return RecallingSession().answer(script, meter)
 
 
-def solve(script: str, symbols: Sequence[str], meter: Budget) -> Mapping[str, Fraction | bool] | None:
-    """Values of ``symbols`` in a model that z3 finds for a whole script, or None where it finds none.
+def find_model(script: str, symbols: Sequence[str], meter: Budget) -> Mapping[str, Fraction | bool] | None:
+    """Return values of ``symbols`` in a model of a whole script; None where z3 finds no model.
 
-    Numbers that are not rational are left out. Raises ``BudgetExceeded``.
+    Irrational values are left out. Raises ``BudgetExceeded``.
     """
     session = RecallingSession()
     if session.answer(script, meter) != "sat":

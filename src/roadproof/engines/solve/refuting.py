@@ -1,8 +1,8 @@
-"""Searches for a tree that shows that a program has no solution: HiGHS finds it, integers decide.
+"""Searches for a refutation tree of an integer program: HiGHS proposes, integer arithmetic confirms.
 
-Depth first. A linear relaxation of the known facts gives multipliers where it is infeasible, else a point.
-Where a known disjunction is false at the point, or a product is wrong, the tree branches. A part of a
-disjunction whose refutation does not use that part refutes the whole.
+Depth first. A linear relaxation of the known facts gives Farkas multipliers where it is infeasible, else a
+point. Where a known disjunction is false at the point, or a product is wrong, the tree branches. If the
+refutation of one part of a disjunction does not use that part, it refutes the whole.
 """
 
 from collections.abc import Iterable, Iterator
@@ -11,17 +11,17 @@ from typing import Any
 
 from roadproof.engines.solve.relaxation import MARGIN, NotRefutedError, Relaxation
 from roadproof.evidence.program import (
-    Cases,
-    Cut,
-    Either,
-    Every,
+    CaseSplit,
+    ColumnSplit,
+    Conjunction,
+    Disjunction,
+    DisjunctiveProgram,
     Fact,
     KnownFacts,
     Linear,
-    Program,
-    Sum,
     Tree,
-    is_absurd,
+    WeightedSum,
+    is_contradiction,
     linear_of,
 )
 from roadproof.runtime.records import dataclass
@@ -33,29 +33,32 @@ MIDDLE = 5  # an interval is cut at the point, or in its middle where the point 
 
 
 @dataclass(frozen=True)
-class Refutation:
-    """A tree, and the nodes of the program that it uses."""
+class TreeRefutation:
+    """A refutation tree, and the program nodes that it uses."""
 
     tree: Tree
     nodes: frozenset[int]
 
 
-def find_tree(program: Program, most: int) -> Tree:
-    """A tree that refutes ``program``, by at most so many linear programs. Raises ``NotRefutedError``."""
-    return Finder(program, most).run()
+def find_refutation_tree(program: DisjunctiveProgram, most: int) -> Tree:
+    """Return a tree that refutes ``program``, by at most ``most`` linear programs.
+
+    Raises ``NotRefutedError``.
+    """
+    return TreeSearch(program, most).run()
 
 
-class Finder:
-    """A search; ``solved`` counts its linear programs."""
+class TreeSearch:
+    """One search for a tree; ``solved`` counts its linear programs."""
 
-    def __init__(self, program: Program, most: int) -> None:
+    def __init__(self, program: DisjunctiveProgram, most: int) -> None:
         self.program, self.most, self.solved = program, most, 0
         self.relaxation = Relaxation(program)
         self.columns = len(program.box)
         self.opposite = opposites(program)
 
     def run(self) -> Tree:
-        """Raises ``NotRefutedError``."""
+        """Return the tree. Raises ``NotRefutedError``."""
         for number, linear in enumerate(self.program.equal):
             self.relaxation.add(Fact("equal", number), linear)
         for number, linear in enumerate(self.program.above):
@@ -84,7 +87,7 @@ class Finder:
             if linear is not None:
                 self.relaxation.add(fact, linear)
 
-    def _refute(self, known: KnownFacts) -> Refutation:
+    def _refute(self, known: KnownFacts) -> TreeRefutation:
         weights = self._plain(known)
         if weights is not None:
             return _summed(weights)
@@ -98,12 +101,12 @@ class Finder:
         return self._cut(known, point) if node is None else self._cases(known, node)
 
     def _plain(self, known: KnownFacts) -> tuple[tuple[Fact, int], ...] | None:
-        """A known inequality that the box excludes, or two that exclude each other."""
+        """Return weights of a known inequality that the box excludes, or of two that clash."""
         for number in sorted(known.nodes):
             if not isinstance(self.program.nodes[number], Linear):
                 continue
             weights = ((Fact("node", number), 1),)
-            if is_absurd(known, weights):
+            if is_contradiction(known, weights):
                 return weights
             for other in self.opposite.get(number, ()):
                 if other in known.nodes:
@@ -111,35 +114,32 @@ class Finder:
         return None
 
     def _multipliers(self, known: KnownFacts, ray: Any) -> tuple[tuple[Fact, int], ...]:
-        """HiGHS gives them with either sign, and rounded."""
+        """Round the multipliers of HiGHS, which come with either sign, until they refute exactly."""
         for signed in (ray, -ray):
             for weights in (
                 *(self.relaxation.whole(signed, digits) for digits in DIGITS),
                 self.relaxation.simple(signed),
             ):
-                if weights and is_absurd(known, weights):
+                if weights and is_contradiction(known, weights):
                     return weights
         raise NotRefutedError("the multipliers of HiGHS are not exact enough")
 
     def _open(self, known: KnownFacts, point: Any) -> int | None:
-        """Of the known disjunctions that are false at the point, that with the fewest possible parts."""
+        """Return, of the known disjunctions false at the point, the one with the fewest possible parts."""
         nodes = self.program.nodes
-        found = [
+        disjunctions = [
             (number, node)
             for number in known.nodes
-            if isinstance(node := nodes[number], Either) and not known.nodes.intersection(node.parts)
+            if isinstance(node := nodes[number], Disjunction) and not known.nodes.intersection(node.parts)
         ]
-        values = self._values([number for number, _ in found], point)
-        false = [(number, node) for number, node in found if values[number] < -NEAR]
+        values = self._values([number for number, _ in disjunctions], point)
+        false = [(number, node) for number, node in disjunctions if values[number] < -NEAR]
         possible = self._possible(known, [part for _, node in false for part in node.parts])
         ranked = ((sum(possible[p] for p in node.parts), values[number], number) for number, node in false)
         return min(ranked)[2] if false else None
 
     def _values(self, numbers: Iterable[int], point: Any) -> dict[int, float]:
-        """How true nodes are at a point, by their least or greatest inequality; negative where one is false.
-
-        With those of all their parts.
-        """
+        """Return how true nodes and their parts are at a point; negative means false."""
         done: dict[int, float] = {}
         for number in self._with_parts(numbers):
             node = self.program.nodes[number]
@@ -149,39 +149,39 @@ class Finder:
                 done[number] = float(value) - (MARGIN if node.strict else 0.0)
             else:
                 parts = [done[p] for p in node.parts]
-                end = float("inf") if isinstance(node, Every) else float("-inf")
-                done[number] = min([end, *parts]) if isinstance(node, Every) else max([end, *parts])
+                end = float("inf") if isinstance(node, Conjunction) else float("-inf")
+                done[number] = min([end, *parts]) if isinstance(node, Conjunction) else max([end, *parts])
         return done
 
     def _possible(self, known: KnownFacts, numbers: Iterable[int]) -> dict[int, bool]:
-        """Whether neither the box nor a single known inequality excludes these nodes, and their parts."""
+        """Return which nodes and parts neither the box nor a single known inequality excludes."""
         done: dict[int, bool] = {}
         for number in self._with_parts(numbers):
             node = self.program.nodes[number]
             if isinstance(node, Linear):
                 alone = KnownFacts(self.program, known.box, frozenset({number}))
                 denied = known.nodes.intersection(self.opposite.get(number, ()))
-                done[number] = not denied and not is_absurd(alone, ((Fact("node", number), 1),))
+                done[number] = not denied and not is_contradiction(alone, ((Fact("node", number), 1),))
             else:
                 parts = (done[part] for part in node.parts)
-                done[number] = all(parts) if isinstance(node, Every) else any(parts)
+                done[number] = all(parts) if isinstance(node, Conjunction) else any(parts)
         return done
 
     def _with_parts(self, numbers: Iterable[int]) -> list[int]:
-        """These nodes and all their parts, parts first: a program may be too deep for recursion."""
-        found, waiting = set[int](), [*numbers]
+        """Return these nodes and all their parts, parts first, without recursion."""
+        reached, waiting = set[int](), [*numbers]
         while waiting:
             number = waiting.pop()
-            if number not in found:
-                found.add(number)
+            if number not in reached:
+                reached.add(number)
                 node = self.program.nodes[number]
                 waiting += () if isinstance(node, Linear) else node.parts
-        return sorted(found)
+        return sorted(reached)
 
-    def _cases(self, known: KnownFacts, number: int) -> Refutation:
-        """Impossible parts come first: one may refute the whole."""
+    def _cases(self, known: KnownFacts, number: int) -> TreeRefutation:
+        """Refute each part of a disjunction, impossible ones first: one may refute the whole."""
         node = self.program.nodes[number]
-        assert isinstance(node, Either)
+        assert isinstance(node, Disjunction)
         trees: dict[int, Tree] = {}
         used = {number}
         possible = self._possible(known, node.parts)
@@ -190,15 +190,15 @@ class Finder:
             new = inner.nodes - known.nodes
             with self._taken_back():
                 self._add_nodes(new)
-                found = self._refute(inner)
-            if not found.nodes & new:
-                return found
-            used |= found.nodes - new
-            trees[part] = found.tree
-        return Refutation(Cases(number, tuple(trees[p] for p in node.parts)), frozenset(used))
+                refutation = self._refute(inner)
+            if not refutation.nodes & new:
+                return refutation
+            used |= refutation.nodes - new
+            trees[part] = refutation.tree
+        return TreeRefutation(CaseSplit(number, tuple(trees[p] for p in node.parts)), frozenset(used))
 
-    def _cut(self, known: KnownFacts, point: Any) -> Refutation:
-        """The product that is most wrong at the point is cut at the wider one of its factors."""
+    def _cut(self, known: KnownFacts, point: Any) -> TreeRefutation:
+        """Cut the wider factor of the product that is most wrong at the point, and refute both halves."""
         wrong = [
             (abs(point[self.columns + k] - point[one] * point[other]), k)
             for k, (one, other) in enumerate(self.program.products)
@@ -218,11 +218,11 @@ class Finder:
             with self._within(known, column, ends) as inner:
                 halves.append(self._refute(inner))
         one, other = halves
-        return Refutation(Cut(column, at, one.tree, other.tree), one.nodes | other.nodes)
+        return TreeRefutation(ColumnSplit(column, at, one.tree, other.tree), one.nodes | other.nodes)
 
     @contextmanager
     def _within(self, known: KnownFacts, column: int, ends: tuple[int, int]) -> Iterator[KnownFacts]:
-        """In other bounds of a column, with the facts of its products in these."""
+        """Narrow a column to ``ends``, with the facts of its products there, for the time of the context."""
         inner = known.within(column, ends)
         products = [k for k, pair in enumerate(self.program.products) if column in pair]
         with self._taken_back():
@@ -241,21 +241,21 @@ class Finder:
         self.relaxation.take_back(count)
 
 
-def _summed(weights: tuple[tuple[Fact, int], ...]) -> Refutation:
+def _summed(weights: tuple[tuple[Fact, int], ...]) -> TreeRefutation:
     nodes = frozenset(fact.number for fact, _ in weights if fact.kind == "node")
-    return Refutation(Sum(weights), nodes)
+    return TreeRefutation(WeightedSum(weights), nodes)
 
 
-def opposites(program: Program) -> dict[int, list[int]]:
-    """For each linear node those that contradict it because they say the opposite of the same terms."""
+def opposites(program: DisjunctiveProgram) -> dict[int, list[int]]:
+    """Return, for each linear node, the nodes that contradict it on the same terms."""
     by_terms: dict[tuple[tuple[int, int], ...], list[tuple[int, Linear]]] = {}
     linear = [(number, x) for number, x in enumerate(program.nodes) if isinstance(x, Linear)]
     for number, x in linear:
         by_terms.setdefault(tuple(sorted(x.terms)), []).append((number, x))
-    found: dict[int, list[int]] = {}
+    contradicting: dict[int, list[int]] = {}
     for number, x in linear:
         for other, y in by_terms.get(tuple(sorted((c, -k) for c, k in x.terms)), ()):
             total = x.constant + y.constant
             if total < 0 or (total == 0 and (x.strict or y.strict)):
-                found.setdefault(number, []).append(other)
-    return found
+                contradicting.setdefault(number, []).append(other)
+    return contradicting

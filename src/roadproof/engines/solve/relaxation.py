@@ -1,4 +1,4 @@
-"""A linear program in HiGHS to which facts are added, and from which the last ones are taken back."""
+"""A linear program in HiGHS to which facts are added and from which the last are removed again."""
 
 import math
 from collections.abc import Sequence
@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from roadproof.evidence.program import Fact, Linear, Program
+from roadproof.evidence.program import DisjunctiveProgram, Fact, Linear
 
 MARGIN = 1e-5  # by which a strict inequality is asked for, relative to its greatest coefficient
 LEAST = 1e-9  # of multipliers, relative to the greatest
@@ -16,14 +16,14 @@ SIMPLE = 10_000  # the greatest denominator of a simple fraction
 
 
 class NotRefutedError(Exception):
-    """No tree was found; the message says why."""
+    """An error that says why no refutation tree was found."""
 
 
 @dataclass
 class Relaxation:
-    """The linear facts of a program that are known; columns of products are columns like others."""
+    """The known linear facts of a program; columns of products are columns like others."""
 
-    program: Program
+    program: DisjunctiveProgram
     facts: list[tuple[Fact, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -38,12 +38,12 @@ class Relaxation:
             self.solver.setOptionValue(option, value)
         scale = self.program.scale
         box = [(low / scale, high / scale) for low, high in self.program.box]
-        box += [range_of(box[x], box[y]) for x, y in self.program.products]
+        box += [product_range(box[x], box[y]) for x, y in self.program.products]
         lows, highs = np.array(box).T
         self.solver.addVars(len(box), np.ascontiguousarray(lows), np.ascontiguousarray(highs))
 
     def add(self, fact: Fact, linear: Linear) -> None:
-        """One more fact, divided by its greatest coefficient."""
+        """Add a fact, divided by its greatest coefficient."""
         terms: dict[int, int] = {}
         for column, factor in linear.terms:
             terms[column] = terms.get(column, 0) + factor
@@ -56,37 +56,37 @@ class Relaxation:
         self.facts.append((fact, size))
 
     def take_back(self, count: int) -> None:
-        """Forget all but the first so many facts."""
+        """Remove all but the first ``count`` facts."""
         gone = np.arange(count, len(self.facts), dtype=np.int32)
         if len(gone):
             self.solver.deleteRows(len(gone), gone)
             del self.facts[count:]
 
     def bound(self, box: Sequence[tuple[int, int]], column: int) -> None:
-        """Other bounds of a column and of the products with it; ``box`` has those of all columns."""
+        """Set the bounds of a column and of the products with it; ``box`` has the bounds of all columns."""
         ends = [(low / self.program.scale, high / self.program.scale) for low, high in box]
         self.solver.changeColBounds(column, *ends[column])
         for k, (x, y) in enumerate(self.program.products):
             if column in (x, y):
-                self.solver.changeColBounds(len(box) + k, *range_of(ends[x], ends[y]))
+                self.solver.changeColBounds(len(box) + k, *product_range(ends[x], ends[y]))
 
     def suspend(self, products: Sequence[int]) -> list[tuple[int, float, float]]:
-        """Ask no more for the corners of these products; what ``resume`` needs."""
-        found = []
+        """Suspend the corner facts of these products; returns the rows for ``resume``."""
+        suspended = []
         for row, (fact, _) in enumerate(self.facts):
             if fact.kind == "corner" and fact.number in products:
                 _, low, high, *_ = self.solver.getRow(row)
-                found.append((row, low, high))
+                suspended.append((row, low, high))
                 self.solver.changeRowBounds(row, -self.infinity, self.infinity)
-        return found
+        return suspended
 
     def resume(self, rows: Sequence[tuple[int, float, float]]) -> None:
-        """Ask again for what was suspended."""
+        """Restore suspended rows."""
         for row, low, high in rows:
             self.solver.changeRowBounds(row, low, high)
 
     def solve(self) -> tuple[Any, Any]:
-        """A point, or multipliers of the facts; None for the other. Raises ``NotRefutedError``."""
+        """Return a point or multipliers of the facts, and None for the other. Raises ``NotRefutedError``."""
         self.solver.run()
         status = self.solver.getModelStatus()
         if status == self.optimal:
@@ -98,14 +98,14 @@ class Relaxation:
         raise NotRefutedError(f"HiGHS gives neither a point nor multipliers ({status})")
 
     def whole(self, ray: Any, digits: int) -> tuple[tuple[Fact, int], ...]:
-        """Multipliers as integers, of which the greatest has so many digits."""
-        return _kept((fact, round(y * 10**digits)) for fact, y in self._relative(ray))
+        """Return multipliers as integers, the greatest with ``digits`` digits."""
+        return _usable_multipliers((fact, round(y * 10**digits)) for fact, y in self._relative(ray))
 
     def simple(self, ray: Any) -> tuple[tuple[Fact, int], ...]:
-        """Multipliers as integers whose ratios are simple: a sum with strict facts may have to be just 0."""
+        """Return multipliers as integers with simple ratios: some sums must be exactly 0."""
         ratios = [(fact, Fraction(y).limit_denominator(SIMPLE)) for fact, y in self._relative(ray)]
         whole = math.lcm(*(y.denominator for _, y in ratios))
-        return _kept((fact, int(y * whole)) for fact, y in ratios)
+        return _usable_multipliers((fact, int(y * whole)) for fact, y in ratios)
 
     def _relative(self, ray: Any) -> list[tuple[Fact, float]]:
         """Multipliers of the facts as they are in the program, relative to the greatest."""
@@ -114,11 +114,11 @@ class Relaxation:
         return [(fact, y / most) for fact, y in each if abs(y) > LEAST * most]
 
 
-def _kept(weights: Any) -> tuple[tuple[Fact, int], ...]:
+def _usable_multipliers(weights: Any) -> tuple[tuple[Fact, int], ...]:
     return tuple((fact, y) for fact, y in weights if y > 0 or (y < 0 and fact.kind == "equal"))
 
 
-def range_of(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
-    """Between which numbers the product of two is."""
+def product_range(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
+    """Return the range of the product of two ranges."""
     corners = [x * y for x in one for y in other]
     return min(corners), max(corners)

@@ -1,6 +1,6 @@
-"""Convex quadratic programs for Clarabel: what is left when every choice has been made.
+"""Solves the convex quadratic programs that remain when every choice is made, with Clarabel.
 
-Inequalities are replaced by affine conditions on their inner side near a point at which they hold: tangents
+Inequalities become affine conditions on their inner side near a point at which they hold: tangents
 there, and secants on a narrow window around it.
 """
 
@@ -18,14 +18,14 @@ from roadproof.runtime.records import dataclass
 
 @dataclass(frozen=True)
 class Square:
-    """``weight · affine²``, to be made small."""
+    """A cost ``weight · affine²``."""
 
     weight: float
     affine: Affine
 
 
-def near(inequality: ColumnInequality, point: Sequence[float], box: Box) -> Bound:
-    """An affine condition under which ``inequality`` holds in ``box``; exact at ``point`` for convex ones."""
+def linearise_at(inequality: ColumnInequality, point: Sequence[float], box: Box) -> Bound:
+    """Return an affine condition that implies ``inequality`` in ``box``; exact at ``point`` if convex."""
     total, squares = split_squares(inequality)
     for factor, form in squares:
         low, high = form.range(box)
@@ -38,8 +38,8 @@ def near(inequality: ColumnInequality, point: Sequence[float], box: Box) -> Boun
     return Bound(total, float(inequality.margin))
 
 
-def narrow(box: Box, point: Sequence[float], widths: Sequence[float]) -> list[tuple[float, float]]:
-    """The part of ``box`` within ``widths`` of ``point`` in each column."""
+def trust_box(box: Box, point: Sequence[float], widths: Sequence[float]) -> list[tuple[float, float]]:
+    """Return the part of ``box`` within ``widths`` of ``point`` in each column."""
     return [
         (max(low, min(x, high) - w), min(high, max(x, low) + w))
         for (low, high), x, w in zip(box, point, widths, strict=True)
@@ -53,9 +53,9 @@ def minimise(
     squares: Iterable[Square],
     cost: Affine | None = None,
 ) -> tuple[float, ...] | None:
-    """The point of least cost, or None where there is none. Raises ``MissingSolverError``.
+    """Return the point that minimises Σ weight·affine² + cost within rows, box and bounds, or None.
 
-    Minimises Σ weight·affine² + cost within rows, box and bounds.
+    Raises ``MissingSolverError``.
     """
     if find_spec("clarabel") is None:
         raise MissingSolverError(
@@ -82,11 +82,11 @@ def minimise(
             below.add([(column, -1.0)], -low)
     for bound in bounds:
         below.add([(c, -k) for c, k in bound.affine.terms], bound.affine.constant - bound.margin)
-    kept = [s for s in squares if s.weight > 0]
+    weighted = [s for s in squares if s.weight > 0]
     forms = Triplets()
-    for square in kept:
+    for square in weighted:
         forms.add(square.affine.terms, square.affine.constant)
-    weights = np.array([s.weight for s in kept])
+    weights = np.array([s.weight for s in weighted])
     quadratic, linear = forms.squared(2 * weights, count), 2 * forms.weighted(weights, count)
     for column, factor in cost.terms if cost else ():
         linear[column] += factor

@@ -1,7 +1,6 @@
-"""The one home of z3 (and of cvc5): sessions that speak SMT-LIB 2 text.
+"""The only access to z3 and cvc5: sessions that exchange SMT-LIB 2 text.
 
-Everything that is asked of an SMT solver passes through here as text, so that any query can be
-written to a file and asked again of another program.
+Every query is text, so it can be written to a file and given to another solver.
 """
 
 import math
@@ -31,7 +30,7 @@ SExpression: TypeAlias = "str | list[SExpression]"
 
 
 class SolverError(RuntimeError):
-    """The solver refused what it was told: our fault, since we wrote it."""
+    """The solver rejected our text, which is a fault of ours."""
 
 
 class Session:
@@ -48,15 +47,15 @@ class Session:
     def tell(self, commands: str) -> None:
         """Run SMT-LIB commands that print nothing. Raises ``SolverError``, perhaps with a later question.
 
-        Their cost is counted with the next answer.
+        Their cost counts with the next answer.
         """
         self._count(commands)
         self._run(commands)
 
     def _reply(self, question: str, limits: str = "", most: int | None = None) -> str:
-        """What z3 prints where commands end in a question, within ``limits``.
+        """Return the text that z3 prints for commands that end in a question, within ``limits``.
 
-        ``most``: how much z3 may count for the answer, which ``limits`` say, too. Raises ``SolverError``.
+        ``most``: the resource count that ``limits`` allow. Raises ``SolverError``.
         """
         self._count(limits + question)
         return self._run(limits + question)
@@ -65,7 +64,7 @@ class Session:
         self._unspent += COMMAND + CHARACTER * len(commands)
 
     def _run(self, commands: str) -> str:
-        """What z3 prints where it runs commands. Raises ``SolverError``."""
+        """Run commands and return the text that z3 prints. Raises ``SolverError``."""
         import z3  # here, because many answers need no solver
 
         if self._context is None:
@@ -80,74 +79,74 @@ class Session:
         return answer
 
     def close(self) -> None:
-        """Give back what z3 holds, where this object itself lives longer. Nothing may be told afterwards."""
+        """Release the z3 context, where this object itself lives longer. No commands may follow."""
         self._context = None
 
     def check(self, assuming: Sequence[str] = (), meter: Budget | None = None) -> Satisfiability:
-        """``check-sat`` under Boolean constants or their negations, within what ``meter`` has left."""
+        """Run ``check-sat`` under Boolean constants or their negations, within what ``meter`` has left."""
         query = f"(check-sat-assuming ({' '.join(assuming)}))" if assuming else "(check-sat)"
         return self.answer(query, meter)
 
     def check_plainly(self, meter: Budget, seed: int = 0) -> Satisfiability:
-        """``check-sat`` by z3's SMT core alone, without the strategies that z3 tries before it.
+        """Run ``check-sat`` with z3's SMT core alone, without the strategies that z3 tries before it.
 
-        On polynomial arithmetic with many disjunctions those spend most of a minute in vain.
+        On polynomial arithmetic with many disjunctions, those spend most of a minute in vain.
         """
         return self.answer(f"(check-sat-using (using-params smt :random_seed {seed}))", meter)
 
     def answer(self, commands: str, meter: Budget | None) -> Satisfiability:
-        """The answer to commands that end in a check, within what ``meter`` has left.
+        """Return the answer to commands that end in a check, within what ``meter`` has left.
 
         ``unknown`` where the work is used up, or z3 gives up. Raises ``BudgetExceeded``.
         """
         if meter is None:
-            return answer_in(self._reply(commands, NO_LIMITS))
-        if meter.is_out():
+            return parse_satisfiability(self._reply(commands, NO_LIMITS))
+        if meter.is_exhausted():
             return "unknown"
         work, milliseconds = _limits(meter, self._unit)
         limits = f"(set-option :rlimit {work})(set-option :timeout {milliseconds})\n"
-        said = self._reply(f"{commands}\n(get-info :rlimit)", limits, work)
-        counted = counted_in(said)
+        reply = self._reply(f"{commands}\n(get-info :rlimit)", limits, work)
+        counted = resource_count(reply)
         meter.spend((counted - self._counted) / self._unit + self._unspent)
         self._counted, self._unspent = counted, 0.0
-        answer = answer_in(said)
+        answer = parse_satisfiability(reply)
         if answer == "unknown":
             meter.seconds_left()
         return answer
 
     def core(self) -> list[str]:
-        """The assumptions that the last ``unsat`` used."""
+        """Return the assumptions that the last ``unsat`` used."""
         read = parse_sexpression(self._reply("(get-unsat-core)"))
         return [x for x in read if isinstance(x, str)]
 
     def values(self, expressions: Sequence[str]) -> list[Fraction | bool | None]:
-        """Values in the last model, in order; None for a number that is not rational."""
+        """Return values in the last model, in order; None for an irrational number."""
         if not expressions:
             return []
-        return [*_values_in(self._reply(f"(get-value ({' '.join(expressions)}))"))]
+        return [*_parse_values(self._reply(f"(get-value ({' '.join(expressions)}))"))]
 
 
 def _limits(meter: Budget, unit: int) -> tuple[int, int]:
-    """What is left as a solver's count and as milliseconds, rounded up. Raises ``BudgetExceeded``."""
+    """Return the remaining resource count and milliseconds, rounded up. Raises ``BudgetExceeded``."""
     milliseconds = math.ceil(meter.seconds_left() * 1000)
     return max(1, min(_MOST, math.ceil(min(meter.left(), _MOST) * unit))), min(_MOST, milliseconds)
 
 
-def counted_in(said: str) -> int:
-    """How much z3 has counted up to a reply that ends in it."""
-    return int(said[said.rindex(":rlimit") + 7 :].strip(" )\n"))
+def resource_count(reply: str) -> int:
+    """Return the resource count at the end of a reply of z3."""
+    return int(reply[reply.rindex(":rlimit") + 7 :].strip(" )\n"))
 
 
-def answer_in(text: str) -> Satisfiability:
-    """The answer to a check among what a solver prints."""
+def parse_satisfiability(text: str) -> Satisfiability:
+    """Return the answer to a check from the text of a solver."""
     words = text.split()
     if "unsat" in words:
         return "unsat"
     return "sat" if "sat" in words else "unknown"
 
 
-def ask(script: str, solver: str = "z3", meter: Budget | None = None) -> Satisfiability:
-    """The answer of ``solver`` (z3 or cvc5) to a whole SMT-LIB script that ends in ``check-sat``.
+def check_sat(script: str, solver: str = "z3", meter: Budget | None = None) -> Satisfiability:
+    """Return the answer of ``solver`` (z3 or cvc5) to an SMT-LIB script that ends in ``check-sat``.
 
     Raises ``MissingSolverError`` where cvc5 is not installed, and ``BudgetExceeded``.
     """
@@ -163,7 +162,7 @@ def _ask_cvc5(script: str, meter: Budget | None) -> Satisfiability:
     # Without it, cvc5 finds no end to one of the cases of the RSS guarantee, and with it it takes 0.03 s.
     solver.setOption("decision", "justification")
     if meter is not None:
-        if meter.is_out():
+        if meter.is_exhausted():
             return "unknown"
         work, milliseconds = _limits(meter, UNIT_CVC5)
         solver.setOption("rlimit-per", str(work))
@@ -177,14 +176,14 @@ def _ask_cvc5(script: str, meter: Budget | None) -> Satisfiability:
     if meter is not None:
         used = solver.getStatistics().get("resource::resourceUnitsUsed").get("value", 0)
         meter.spend(used / UNIT_CVC5)
-    answer = answer_in(" ".join(printed))
+    answer = parse_satisfiability(" ".join(printed))
     if answer == "unknown" and meter is not None:
         meter.seconds_left()
     return answer
 
 
 def parse_sexpression(text: str) -> list[SExpression]:
-    """The first parenthesised expression of ``text``."""
+    """Return the first parenthesised expression of ``text``."""
     stack: list[list[SExpression]] = [[]]
     for token in _TOKEN.findall(text):
         if token == "(":
@@ -199,13 +198,13 @@ def parse_sexpression(text: str) -> list[SExpression]:
 
 
 @lru_cache(maxsize=4096)
-def _values_in(said: str) -> tuple[Fraction | bool | None, ...]:
-    """The values that a solver prints, each behind its expression."""
-    return tuple(read_value(pair[1]) for pair in parse_sexpression(said))
+def _parse_values(reply: str) -> tuple[Fraction | bool | None, ...]:
+    """Return the values that a solver prints, each after its expression."""
+    return tuple(read_value(pair[1]) for pair in parse_sexpression(reply))
 
 
 def read_value(value: SExpression) -> Fraction | bool | None:
-    """A solver's value as a rational or truth value; None where it is an irrational number."""
+    """Return a solver's value as a rational or truth value; None for an irrational number."""
     match value:
         case "true" | "false":
             return value == "true"
@@ -218,5 +217,5 @@ def read_value(value: SExpression) -> Fraction | bool | None:
         case ["/", upper, lower]:
             top, bottom = read_value(upper), read_value(lower)
             return None if top is None or bottom is None else Fraction(top) / Fraction(bottom)
-        case _:
+        case _:  # open: expressions of a solver
             return None

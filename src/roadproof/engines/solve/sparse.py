@@ -16,7 +16,7 @@ Places = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Columns:
-    """A matrix by columns, with rows in order and none twice, under the names of scipy's ``csc_array``."""
+    """A matrix by columns (CSC), rows sorted and unique, with the field names of scipy's ``csc_array``."""
 
     data: Numbers
     indices: NDArray[np.int32]
@@ -26,7 +26,7 @@ class Columns:
 
 
 def by_columns(rows: Places, columns: Places, values: Numbers, shape: tuple[int, int]) -> Columns:
-    """The matrix of these entries; the values of entries at the same place are added in their order."""
+    """Return the matrix of these entries; values at the same place are added in their order."""
     order = np.lexsort((rows, columns))
     rows, columns, values = rows[order], columns[order], values[order]
     first = np.ones(len(order), dtype=bool)
@@ -40,13 +40,13 @@ def by_columns(rows: Places, columns: Places, values: Numbers, shape: tuple[int,
 
 def _without_zeros(matrix: Columns) -> Columns:
     """The matrix without entries that are 0, whose places change how Clarabel orders the columns."""
-    kept = matrix.data != 0
-    ends = np.concatenate([[0], np.cumsum(kept)])[matrix.indptr].astype(np.int32)
-    return Columns(matrix.data[kept], matrix.indices[kept], ends, matrix.shape)
+    nonzero = matrix.data != 0
+    ends = np.concatenate([[0], np.cumsum(nonzero)])[matrix.indptr].astype(np.int32)
+    return Columns(matrix.data[nonzero], matrix.indices[nonzero], ends, matrix.shape)
 
 
 class Triplets:
-    """The entries of a sparse matrix, row by row, and a number beside each row."""
+    """The entries of a sparse matrix, row by row, and a right-hand side for each row."""
 
     def __init__(self) -> None:
         self.rows: list[int] = []
@@ -55,6 +55,7 @@ class Triplets:
         self.right: list[float] = []
 
     def add(self, terms: Iterable[tuple[int, float]], right: float) -> None:
+        """Append a row of (column, value) entries with its right-hand side."""
         for column, factor in terms:
             self.rows.append(len(self.right))
             self.columns.append(column)
@@ -62,11 +63,11 @@ class Triplets:
         self.right.append(right)
 
     def arrays(self) -> tuple[Places, Places, Numbers]:
-        """Rows, columns and values of the entries."""
+        """Return rows, columns and values of the entries."""
         return np.array(self.rows, np.intp), np.array(self.columns, np.intp), np.array(self.values, float)
 
     def stacked(self, other: "Triplets", count: int) -> Columns:
-        """The rows of this and then of the other, with ``count`` columns."""
+        """Return the rows of this and then of the other, with ``count`` columns."""
         shift = len(self.right)
         parts = zip(self.arrays(), other.arrays(), strict=True)
         rows, columns, values = (np.concatenate(pair) for pair in parts)
@@ -74,7 +75,7 @@ class Triplets:
         return by_columns(rows, columns, values, (shift + len(other.right), count))
 
     def squared(self, weights: Numbers, count: int) -> Columns:
-        """The sum of weight · row · rowᵀ, with ``count`` rows and columns."""
+        """Return Σ weight · row · rowᵀ, with ``count`` rows and columns."""
         rows, columns, values = self.arrays()
         sizes = np.bincount(rows, minlength=len(self.right))
         repeats = sizes[rows]
@@ -87,7 +88,7 @@ class Triplets:
         return _without_zeros(by_columns(columns[left], columns[right], products, (count, count)))
 
     def weighted(self, weights: Numbers, count: int) -> Numbers:
-        """The sum of weight · row · its number, with ``count`` entries."""
+        """Return Σ weight · row · right-hand side, with ``count`` entries."""
         rows, columns, values = self.arrays()
         given = (weights * np.array(self.right, float))[rows] * values
         return np.asarray(np.bincount(columns, weights=given, minlength=count), float)

@@ -1,4 +1,4 @@
-"""The answers of all questions as frozen dataclasses, one module a question.
+"""The JSON answers of all questions as frozen dataclasses, one module for each kind of question.
 
-JSON, strict reading, schemas and what ``check`` compares follow from them.
+The JSON writer, the strict reader, the schemas and the comparison in ``check`` are derived from them.
 """

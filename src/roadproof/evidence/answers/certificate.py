@@ -1,21 +1,21 @@
-"""The files of certificates, as they stand in JSON."""
+"""The JSON form of certificates."""
 
 from collections.abc import Iterator, Mapping
 from functools import reduce
 from itertools import groupby
 from operator import or_
-from typing import Annotated, Final, Literal, TypeAlias, get_args
+from typing import Annotated, Literal, TypeAlias, get_args
 
+from roadproof.core_record import CERTIFICATE
 from roadproof.evidence.answers.shared import Assuming, Dense, Formula, OneScenario, Options, SetName
-from roadproof.evidence.codec import LEFT_OUT, Doc, Remedy, Rule
-from roadproof.evidence.json_schema import Plain
-from roadproof.library.motion import ALL_SCHEMAS
+from roadproof.evidence.codec import LEFT_OUT, Doc, ErrorHint, Rule
+from roadproof.evidence.schema_notes import DescribedBy
+from roadproof.library.assumption import ALL_SCHEMAS
 from roadproof.runtime.records import dataclass
 
-SCHEMA: Final = "roadproof/certificate/2"
 Term: TypeAlias = Annotated[str, Rule(least=1)]
-Place: TypeAlias = Annotated[int, Rule(minimum=0), Remedy("there is no formula of that number")]
-Sign: TypeAlias = Annotated[Literal["+", "-"], Remedy("a sign must be + or -")]
+Place: TypeAlias = Annotated[int, Rule(minimum=0), ErrorHint("there is no formula of that number")]
+Sign: TypeAlias = Annotated[Literal["+", "-"], ErrorHint("a sign must be + or -")]
 NamedSite: TypeAlias = tuple[str, Place, Sign, str] | tuple[str, Place, Sign, str, str]
 InstancedSite: TypeAlias = (
     tuple[Place, Sign, str, tuple[str, ...]] | tuple[Place, Sign, str, str, tuple[str, ...]]
@@ -45,14 +45,14 @@ TableauLine: TypeAlias = Annotated[
 
 
 @dataclass(frozen=True, kw_only=True)
-class Axiom:
+class AxiomData:
     """A fact about motion or an induction over time, by the name of its schema."""
 
     schema: str
     arguments: Options
 
 
-# Schemas by what they take: how a schema of JSON calls both, and says what they are.
+# For each group of motion schemas with the same arguments: names of two definitions, and their descriptions.
 _AXIOMS = (
     ("Sides", "Sides", "How two terms may come to be equal.", "Two terms that are compared."),
     ("Leaves", "Formula", "How a formula comes to be false.", "A formula."),
@@ -71,53 +71,53 @@ _AXIOMS = (
 
 
 def _kinds_of_axioms() -> Iterator[type]:
-    """Definitions for the JSON Schema alone: one for all schemas of motion that take the same arguments."""
-    groups = groupby(ALL_SCHEMAS.items(), lambda x: x[1])
-    for (taken, those), (name, of, doc, of_doc) in zip(groups, _AXIOMS, strict=True):
-        fields = [(x, Formula if x == "inside" else Term) for x in taken]
+    """Yield definitions for the JSON Schema alone, one for all motion schemas with the same arguments."""
+    groups = groupby(ALL_SCHEMAS.items(), lambda schema: schema[1])
+    for (argument_names, schemas), (name, of, doc, of_doc) in zip(groups, _AXIOMS, strict=True):
+        fields = [(x, Formula if x == "inside" else Term) for x in argument_names]
         arguments = _definition(f"Of{of}", of_doc, dict(fields))
-        schema = Literal[tuple(x for x, _ in those)]  # type: ignore[valid-type]
+        schema = Literal[tuple(schema_name for schema_name, _ in schemas)]  # type: ignore[valid-type]
         yield _definition(f"{name}Axiom", doc, {"schema": schema, "arguments": arguments})
 
 
 def _definition(name: str, doc: str, fields: Mapping[str, object]) -> type:
-    about = {"__annotations__": dict(fields), "__doc__": doc, "__module__": __name__}
-    made: type = dataclass(frozen=True, kw_only=True)(type(name, (), about))
-    return made
+    attributes = {"__annotations__": dict(fields), "__doc__": doc, "__module__": __name__}
+    definition: type = dataclass(frozen=True, kw_only=True)(type(name, (), attributes))
+    return definition
 
 
 @dataclass(frozen=True, kw_only=True)
-class Lemma:
+class StateLemmaData:
     """A clause that holds at every instant."""
 
     clause: Annotated[
-        tuple[Annotated[tuple[str, bool], Remedy("no pair of an atom and a truth value")], ...],
+        tuple[Annotated[tuple[str, bool], ErrorHint("no pair of an atom and a truth value")], ...],
         Doc("Atoms, each with the truth value of which one must hold."),
     ]
     at: Annotated[tuple[str, ...], Doc("The moments at which it is used.")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Query:
-    """A query that is to be answered unsat."""
+class QueryData:
+    """A query that a solver must answer with unsat."""
 
     title: Annotated[str, Doc("Of what it is a query.")]
     smtlib: Annotated[tuple[str, ...], Doc("The lines of a script in SMT-LIB 2.")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Certificate:
-    """The claim, and the instances and lemmas from which the stored queries are derived again; each query is
-    to be answered unsat.
+class CertificateData:
+    """The claim, and the instances and lemmas from which the stored queries are derived again; each query
+    must be unsatisfiable.
     """
 
-    schema: Literal["roadproof/certificate/2"] = SCHEMA
+    schema: Literal["roadproof/certificate/2"] = CERTIFICATE
     property: Annotated[str, Doc("Template property such as P1, another name, or empty.")]
     scenario: OneScenario
     claim: Formula
-    assuming: Annotated[Assuming, Remedy("leave 'assuming' out"), LEFT_OUT] = ()
+    assuming: Annotated[Assuming, ErrorHint("leave 'assuming' out"), LEFT_OUT] = ()
     axioms: Annotated[
-        tuple[Annotated[Axiom, Plain(reduce(or_, _kinds_of_axioms()))], ...] | None,
+        tuple[Annotated[AxiomData, DescribedBy(reduce(or_, _kinds_of_axioms()))], ...] | None,
         LEFT_OUT,
         Doc(
             "The facts about motion and the inductions over time that the proof uses; inductions are true on "
@@ -153,7 +153,7 @@ class Certificate:
     ] = None
     set: SetName
     options: Options
-    view: Annotated[Dense, Remedy("a certificate is about dense time")]
+    view: Annotated[Dense, ErrorHint("a certificate is about dense time")]
     assumptions: Annotated[
         tuple[str, ...], Doc("Declared bounds of parameters that were used, such as minSafe >= 0.")
     ]
@@ -169,15 +169,15 @@ class Certificate:
         tuple[InstancedSite, ...],
         Doc("A quantifier as in times, then the terms that it is instantiated with."),
     ]
-    lemmas: Annotated[tuple[Lemma, ...], Doc("Clauses that the queries use.")]
+    lemmas: Annotated[tuple[StateLemmaData, ...], Doc("Clauses that the queries use.")]
     queries: Annotated[
-        tuple[Query, ...],
-        Plain(Annotated[tuple[Query, ...], Rule(least=1)]),
+        tuple[QueryData, ...],
+        DescribedBy(Annotated[tuple[QueryData, ...], Rule(least=1)]),
         Doc("What is to be answered unsat: the claim, and each case of each lemma."),
     ]
     tableau: Annotated[
         tuple[str, ...] | None,
-        Plain(Annotated[tuple[TableauLine, ...], Rule(least=1)] | None),
+        DescribedBy(Annotated[tuple[TableauLine, ...], Rule(least=1)] | None),
         Doc(
             "The proof for Coq, a line a node: a rule of proofs/kernel/Tableau.v with what it is told, "
             "children after it; null where none was found."

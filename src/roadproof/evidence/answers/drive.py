@@ -1,12 +1,12 @@
-"""The files of judged drives, and traces that refute a claim, with their roads, as they stand in JSON."""
+"""The JSON form of judged drives, of traces that refute a claim, and of their roads."""
 
 from collections.abc import Mapping
 from fractions import Fraction
 from typing import Annotated, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import Dense, Formula, OneScenario, SetName
-from roadproof.evidence.codec import LACKING, LEFT_OUT, Doc, Key, Remedy, Rule
-from roadproof.evidence.json_schema import Plain, Shared, Whole
+from roadproof.evidence.codec import LACKING, LEFT_OUT, Doc, ErrorHint, Key, Rule
+from roadproof.evidence.schema_notes import DescribedBy, EvidenceSchema, SharedType
 from roadproof.runtime.records import dataclass
 from roadproof.world.road import Attribute, Zone
 from roadproof.world.signals import Kind
@@ -15,13 +15,13 @@ _ZONES = "zone= and attribute= are described in docs/explanation/semantics.md"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Lanelet:
+class LaneletData:
     """A rectangle of the road."""
 
     id: Annotated[str, Doc("Name of the lanelet, of which there is one in the road.")]
     lane: Annotated[str, Doc("Name of the lane that it is a part of.")]
-    zone: Annotated[Zone, Remedy(_ZONES), Doc("Which kind of road it is on.")]
-    attribute: Annotated[Attribute, Remedy(_ZONES), Doc("What its lane is for.")]
+    zone: Annotated[Zone, ErrorHint(_ZONES), Doc("Which kind of road it is on.")]
+    attribute: Annotated[Attribute, ErrorHint(_ZONES), Doc("What its lane is for.")]
     s: Annotated[
         tuple[Fraction | None, Fraction | None],
         Doc("Where it begins and ends along the road, in m; null is without end."),
@@ -29,14 +29,14 @@ class Lanelet:
     d: Annotated[tuple[Fraction, Fraction], Doc("Its right and its left edge, in m.")]
 
 
-KeptLanelet: TypeAlias = Annotated[Lanelet, Shared("lanelet")]
+LaneletField: TypeAlias = Annotated[LaneletData, SharedType("lanelet")]
 
 
 _FOUR = Rule(least=4, most=4)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Curve:
+class CurveData:
     """A part of the line in the plane along which s is measured, from where s, x, y and heading are."""
 
     kind: Annotated[Literal["line", "spiral", "cubic", "polyline"], Doc("Its shape.")]
@@ -61,18 +61,18 @@ class Curve:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Road:
+class RoadData:
     """Lanelets by s, which grows in driving direction, and d, which grows to the left, both in m."""
 
     name: Annotated[str, Doc("Name of the road.")]
-    lanelets: Annotated[tuple[KeptLanelet, ...], Rule(most=1000), Doc("All lanelets.")]
+    lanelets: Annotated[tuple[LaneletField, ...], Rule(most=1000), Doc("All lanelets.")]
     adjacent: Annotated[
-        tuple[Annotated[tuple[str, str], Remedy("lanes without a neighbour are no pair")], ...],
+        tuple[Annotated[tuple[str, str], ErrorHint("lanes without a neighbour are no pair")], ...],
         Rule(most=1000),
         Doc("Pairs of names of lanes that lie beside each other."),
     ]
     line: Annotated[
-        tuple[Curve, ...],
+        tuple[CurveData, ...],
         Rule(most=10_000),
         LEFT_OUT,
         Doc("Where the road is in the plane; none: s and d are x and y."),
@@ -85,11 +85,11 @@ class Road:
     ] = ()
 
 
-KeptRoad: TypeAlias = Annotated[Road, Shared("road")]
+RoadField: TypeAlias = Annotated[RoadData, SharedType("road")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Piece:
+class PieceData:
     """A time with constant accelerations."""
 
     duration: Annotated[Fraction | None, Doc("In s; null is for ever.")]
@@ -98,7 +98,7 @@ class Piece:
 
 
 @dataclass(frozen=True, kw_only=True)
-class JerkPiece(Piece):
+class JerkPieceData(PieceData):
     """A time with constant jerk."""
 
     j_lon: Annotated[Fraction, Doc("By which a_lon grows, in m/s^3; 0 in the last piece.")]
@@ -106,13 +106,13 @@ class JerkPiece(Piece):
 
 _PIECES = (
     Rule(least=1, most=2000),
-    Remedy("the last piece lasts for ever"),
+    ErrorHint("the last piece lasts for ever"),
     Doc("Accelerations and jerks one after the other; the last one lasts for ever."),
 )
 
 
 @dataclass(frozen=True, kw_only=True)
-class Motion:
+class MotionData:
     """A box: s and d are those of its front-left corner, s along the road, d to the left."""
 
     kind: Annotated[
@@ -124,56 +124,56 @@ class Motion:
     d: Annotated[Fraction, Doc("At time 0, in m.")]
     v_lon: Annotated[Fraction, Doc("At time 0, in m/s.")]
     v_lat: Annotated[Fraction, Doc("At time 0, in m/s.")]
-    pieces: Annotated[tuple[Piece, ...], *_PIECES]
+    pieces: Annotated[tuple[PieceData, ...], *_PIECES]
 
 
 @dataclass(frozen=True, kw_only=True)
-class JerkMotion(Motion):
+class JerkMotionData(MotionData):
     """A motion in a file in which some vehicle has jerk."""
 
-    pieces: Annotated[tuple[JerkPiece, ...], *_PIECES]
+    pieces: Annotated[tuple[JerkPieceData, ...], *_PIECES]
 
 
 @dataclass(frozen=True, kw_only=True)
-class CourseValue:
-    """A value of an own signal."""
+class CourseValueData:
+    """A value of a custom signal."""
 
     start: Annotated[Fraction, Key("from"), Doc("From when on it has the value, in s; the first is 0.")]
     value: Annotated[Fraction, Doc("In SI units; 0 and 1 are false and true.")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Signal:
-    """The course of an own signal, constant from one time to the next and for ever after the last."""
+class SignalData:
+    """The values of a custom signal in time; each lasts until the next, and the last for ever."""
 
     signal: Annotated[
         str, Rule(pattern="^[A-Za-z_][A-Za-z0-9_]*$", called="name"), Doc("Name of the signal.")
     ]
     vehicle: Annotated[str | None, Doc("Null for a signal of no vehicle.")] = None
-    values: Annotated[tuple[CourseValue, ...], Rule(least=1, most=2000), Doc("Its values in time.")]
+    values: Annotated[tuple[CourseValueData, ...], Rule(least=1, most=2000), Doc("Its values in time.")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrueTimes:
-    """When a definition in the formula is true."""
+class TrueTimesData:
+    """The times at which a definition in the formula is true."""
 
     formula: Annotated[str, Doc("The definition with what it is applied to.")]
     true: Annotated[str, Doc("Intervals in s, open and closed ends, such as [0, 3.2); empty where never.")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class DriveSays:
-    """What the judge said of the drive when the file was written; who reads the file judges again."""
+class DriveVerdictData:
+    """The verdict of the judge when the file was written; a reader of the file judges the drive again."""
 
     verdict: Literal["WITNESSED"] = "WITNESSED"
     view: Dense = "dense"
     natural: Annotated[bool | None, LEFT_OUT, Doc("Whether it was looked for among natural drives.")] = None
-    times: Annotated[tuple[TrueTimes, ...], Doc("When the definitions in the formula are true.")]
+    times: Annotated[tuple[TrueTimesData, ...], Doc("When the definitions in the formula are true.")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class AnyDrive:
-    """What both versions of drive files say."""
+class AnyDriveData:
+    """The fields of both versions of drive files."""
 
     schema: str
     scenario: OneScenario = None
@@ -198,34 +198,34 @@ class AnyDrive:
     parameters: Annotated[
         Mapping[str, str], Doc("Values of parameters (rationals, SI units) and readings of options, by name.")
     ]
-    road: KeptRoad
-    vehicles: Mapping[str, Motion]
+    road: RoadField
+    vehicles: Mapping[str, MotionData]
     signals: Annotated[
-        tuple[Signal, ...],
+        tuple[SignalData, ...],
         Rule(most=100),
         LEFT_OUT,
-        Doc("Courses of own signals; left out where there are none."),
+        Doc("Courses of custom signals; left out where there are none."),
     ] = ()
-    verdict: Annotated[object, Plain(DriveSays)] = None
+    verdict: Annotated[object, DescribedBy(DriveVerdictData)] = None
 
 
 _VEHICLES = (Rule(most=20), Doc("Motions by the name of the vehicle in the formula."))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Drive(AnyDrive):
+class DriveData(AnyDriveData):
     """A judged drive without jerk. Numbers are exact rationals as text, in SI units."""
 
     schema: Literal["roadproof/drive/1"] = "roadproof/drive/1"
-    vehicles: Annotated[Mapping[str, Motion], *_VEHICLES]
+    vehicles: Annotated[Mapping[str, MotionData], *_VEHICLES]
 
 
 @dataclass(frozen=True, kw_only=True)
-class JerkDrive(AnyDrive):
+class JerkDriveData(AnyDriveData):
     """A judged drive in which a piece of some vehicle has jerk; every piece says its jerk."""
 
     schema: Literal["roadproof/drive/2"] = "roadproof/drive/2"
-    vehicles: Annotated[Mapping[str, JerkMotion], *_VEHICLES]
+    vehicles: Annotated[Mapping[str, JerkMotionData], *_VEHICLES]
 
 
 # --- traces that refute a claim ---------------------------------------------------------------------
@@ -235,7 +235,7 @@ Between: TypeAlias = Literal["the state of the instant before", "the state of th
 
 
 @dataclass(frozen=True, kw_only=True)
-class Repeats:
+class RepeatsData:
     """The trace repeats itself for ever; left out where it keeps its last state."""
 
     start: Annotated[Fraction, Key("from"), Doc("The instant that each round begins with, in s.")]
@@ -243,7 +243,7 @@ class Repeats:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Instant:
+class InstantData:
     """A state at a point in time."""
 
     time: Annotated[Fraction, Doc("In s.")]
@@ -259,40 +259,40 @@ class Instant:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Trace:
+class RefutingTraceData:
     """A trace over points in time on which a claim is judged false, where no drive was found."""
 
-    kind: Annotated[Literal["trace"], Remedy("a drive is a file beside the index")]
+    kind: Annotated[Literal["trace"], ErrorHint("a drive is a file beside the index")]
     between: Annotated[Between, Doc("What holds between two instants.")]
     parameters: Annotated[
         Mapping[str, Fraction], Doc("Values of parameters by name, in SI units (s, m, m/s, m/s^2).")
     ]
     road: Annotated[
-        KeptRoad | None,
+        RoadField | None,
         LACKING,
         Doc("Null where the claim speaks of no lanes, and left out by earlier versions."),
     ] = None
-    repeats: Annotated[Repeats | None, LEFT_OUT] = None
+    repeats: Annotated[RepeatsData | None, LEFT_OUT] = None
     instants: Annotated[
-        tuple[Instant, ...],
+        tuple[InstantData, ...],
         Rule(least=1, most=MOST_INSTANTS),
-        Remedy(f"a trace has at least one and not more than {MOST_INSTANTS} instants"),
+        ErrorHint(f"a trace has at least one and not more than {MOST_INSTANTS} instants"),
         Doc("States in the order of time, the first at 0."),
     ]
 
 
 @dataclass(frozen=True, kw_only=True)
-class RefutingDrive:
+class RefutingDriveData:
     """A judged drive on which the claim is false."""
 
     kind: Literal["drive"]
-    drive: Annotated[object, Whole("drive.json")]
+    drive: Annotated[object, EvidenceSchema("drive.json")]
 
 
-KeptTrace: TypeAlias = Annotated[object, Plain(Trace), Shared("trace")]
-KeptCounterexample: TypeAlias = Annotated[
+TraceField: TypeAlias = Annotated[object, DescribedBy(RefutingTraceData), SharedType("trace")]
+CounterexampleField: TypeAlias = Annotated[
     object,
-    Plain(KeptTrace | RefutingDrive | None),
+    DescribedBy(TraceField | RefutingDriveData | None),
     Doc("What refutes the claim, judged: a drive, or else a trace; null where nothing does."),
-    Shared("counterexample"),
+    SharedType("counterexample"),
 ]

@@ -1,4 +1,4 @@
-"""The answer of ``roadproof extensions``: what is installed beyond the core."""
+"""The answer of ``roadproof extensions``: the installed extensions."""
 
 from typing import Annotated, Final, Literal
 
@@ -10,7 +10,7 @@ SCHEMA: Final = "roadproof/extensions/1"
 
 @dataclass(frozen=True, kw_only=True)
 class ExtensionData:
-    """An extension: what it adds, and for whom."""
+    """An extension: its additions, and its audience."""
 
     name: str
     package: str
@@ -18,6 +18,7 @@ class ExtensionData:
     audience: Literal["testers", "safety cases", "researchers"]
     label: Annotated[Literal["stable", "incubating"], Doc("What is incubating may be removed.")]
     incubating: Annotated[tuple[str, ...], Doc("Parts that may be removed.")]
+    page: Annotated[str, Doc("The path or address of its documentation, or empty.")]
     needs: Annotated[tuple[str, ...], Doc("The extensions that it imports.")]
     commands: tuple[str, ...]
     functions: Annotated[tuple[str, ...], Doc("What it adds to import roadproof.")]
@@ -25,7 +26,7 @@ class ExtensionData:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer:
+class ExtensionsData:
     """The extensions that are installed."""
 
     schema: Literal["roadproof/extensions/1"] = SCHEMA

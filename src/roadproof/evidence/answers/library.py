@@ -1,8 +1,8 @@
-"""The answer of ``roadproof list``: what the library holds."""
+"""The answer of ``roadproof list``: the contents of the library."""
 
 from typing import Annotated, Final, Literal
 
-from roadproof.evidence.answers import shared
+from roadproof.evidence.answers import headings, shared
 from roadproof.evidence.codec import Doc, Rule
 from roadproof.logic.syntax import ParameterBound
 from roadproof.runtime.records import dataclass
@@ -11,26 +11,26 @@ SCHEMA: Final = "roadproof/list/1"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scenario:
-    """A scenario that can be asked about."""
+class ScenarioData:
+    """A scenario that questions can name."""
 
     name: Annotated[str, Rule(least=1), Doc("Its definition, such as that of number 4.")]
     arguments: Annotated[tuple[str, ...], Doc("Vehicles and lane that it is about.")]
     doc: str
-    words: shared.KeptWords
+    words: shared.WordsField
 
 
 @dataclass(frozen=True, kw_only=True)
-class Definition:
+class DefinitionData:
     """A definition that is no scenario."""
 
     name: str
-    parameters: tuple[shared.KeptBinding, ...]
+    parameters: tuple[shared.BindingField, ...]
     doc: str
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpecificationSet:
+class SpecificationSetData:
     """A spec set."""
 
     name: shared.SetName
@@ -39,7 +39,7 @@ class SpecificationSet:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Option:
+class OptionData:
     """An option with its readings."""
 
     name: str
@@ -49,7 +49,7 @@ class Option:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Parameter:
+class ParameterData:
     """A parameter with its declared value."""
 
     name: str
@@ -60,13 +60,13 @@ class Parameter:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(shared.PlainHeading):
-    """What the library holds."""
+class LibraryData(headings.BaseHeading):
+    """The contents of the library."""
 
     schema: Literal["roadproof/list/1"] = SCHEMA
     set: shared.SetName
-    scenarios: tuple[Scenario, ...]
-    definitions: tuple[Definition, ...]
-    sets: tuple[SpecificationSet, ...]
-    options: tuple[Option, ...]
-    parameters: tuple[Parameter, ...]
+    scenarios: tuple[ScenarioData, ...]
+    definitions: tuple[DefinitionData, ...]
+    sets: tuple[SpecificationSetData, ...]
+    options: tuple[OptionData, ...]
+    parameters: tuple[ParameterData, ...]

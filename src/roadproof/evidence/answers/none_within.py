@@ -1,21 +1,20 @@
-"""The files that show a NONE-WITHIN, as they stand in JSON."""
+"""The JSON form of the files that show a NONE-WITHIN."""
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Annotated, Final, Literal
+from typing import Annotated, Literal
 
-from roadproof.evidence.answers.drive import KeptRoad
+from roadproof.core_record import NONE_WITHIN
+from roadproof.evidence.answers.drive import RoadField
 from roadproof.evidence.answers.shared import Formula, OneScenario, SetName
 from roadproof.evidence.codec import Doc, Rule
 from roadproof.runtime.records import dataclass
 from roadproof.world.signals import Kind
 
-SCHEMA: Final = "roadproof/none-within/1"
-
 
 @dataclass(frozen=True, kw_only=True)
-class Model:
-    """What a vehicle can do, in SI units."""
+class VehicleModelData:
+    """The abilities of a vehicle, in SI units."""
 
     name: str
     length: Fraction
@@ -29,7 +28,7 @@ class Model:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Refutation:
+class RefutationTree:
     """A tree for one assignment of lanes."""
 
     lanes: Annotated[Mapping[str, str], Doc("A lane of the road for each free lane of the formula.")]
@@ -41,10 +40,10 @@ class Refutation:
 
 
 @dataclass(frozen=True, kw_only=True)
-class NoneWithin:
-    """That no drive within limits satisfies a formula."""
+class NoneWithinData:
+    """The proof that no drive within limits satisfies a formula."""
 
-    schema: Literal["roadproof/none-within/1"] = SCHEMA
+    schema: Literal["roadproof/none-within/1"] = NONE_WITHIN
     scenario: OneScenario = None
     set: SetName
     formula: Annotated[Formula, Doc("What holds on no drive within the limits.")]
@@ -55,6 +54,10 @@ class NoneWithin:
     parameters: Annotated[
         Mapping[str, str], Doc("Values of parameters (rationals, SI units) and readings of options, by name.")
     ]
-    road: KeptRoad
-    vehicles: Annotated[Mapping[str, Model], Rule(least=1), Doc("Models by the name in the formula.")]
-    refutations: Annotated[tuple[Refutation, ...], Rule(least=1), Doc("One for each assignment of lanes.")]
+    road: RoadField
+    vehicles: Annotated[
+        Mapping[str, VehicleModelData], Rule(least=1), Doc("Models by the name in the formula.")
+    ]
+    refutations: Annotated[
+        tuple[RefutationTree, ...], Rule(least=1), Doc("One for each assignment of lanes.")
+    ]

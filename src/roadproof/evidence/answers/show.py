@@ -2,7 +2,7 @@
 
 from typing import Annotated, Final, Literal
 
-from roadproof.evidence.answers import shared
+from roadproof.evidence.answers import headings, shared
 from roadproof.evidence.answers.tree import ClaimNode, DefinitionNode
 from roadproof.evidence.codec import Doc
 from roadproof.runtime.records import dataclass
@@ -11,7 +11,7 @@ SCHEMA: Final = "roadproof/show/1"
 
 
 @dataclass(frozen=True, kw_only=True)
-class ShownFormula:
+class ShownFormulaData:
     """A formula as text and as a syntax tree."""
 
     text: shared.Formula
@@ -19,7 +19,7 @@ class ShownFormula:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Definition:
+class ShownDefinitionData:
     """A definition as text and as a syntax tree."""
 
     name: str
@@ -28,8 +28,8 @@ class Definition:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Parameter:
-    """A parameter that a formula or a definition speaks of."""
+class ShownParameterData:
+    """A parameter that a formula or a definition mentions."""
 
     name: str
     value: Annotated[shared.Rational, Doc("The declared value, in unit.")]
@@ -38,15 +38,15 @@ class Parameter:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(shared.PlainHeading):
+class ShowData(headings.BaseHeading):
     """A scenario, a definition or a formula."""
 
     schema: Literal["roadproof/show/1"] = SCHEMA
     set: shared.SetName
     options: shared.Options
     scenario: Annotated[
-        shared.KeptWords | None, Doc("The scenario in words; null where something else is shown.")
+        shared.WordsField | None, Doc("The scenario in words; null where something else is shown.")
     ]
-    formula: Annotated[ShownFormula | None, Doc("The formula; null where a definition is shown.")]
-    definitions: tuple[Definition, ...]
-    parameters: tuple[Parameter, ...]
+    formula: Annotated[ShownFormulaData | None, Doc("The formula; null where a definition is shown.")]
+    definitions: tuple[ShownDefinitionData, ...]
+    parameters: tuple[ShownParameterData, ...]

@@ -1,11 +1,11 @@
-"""Syntax trees as they stand in JSON: every part is an object whose ``node`` says what it is."""
+"""The JSON form of syntax trees: every part is an object whose ``node`` names its kind."""
 
 from fractions import Fraction
 from typing import Annotated, Literal, TypeAlias, assert_never
 
-from roadproof.evidence.answers.shared import Binding, KeptBinding
+from roadproof.evidence.answers.shared import BindingData, BindingField
 from roadproof.evidence.codec import Doc, Rule
-from roadproof.evidence.json_schema import Shared
+from roadproof.evidence.schema_notes import SharedType
 from roadproof.logic import syntax
 from roadproof.logic.syntax import BinaryOperator, Bounds, Expression
 from roadproof.runtime.records import dataclass
@@ -50,7 +50,7 @@ class CallNode:
 
 @dataclass(frozen=True, kw_only=True)
 class PrefixNode:
-    """Not, or minus."""
+    """A negation, or a minus sign."""
 
     node: Literal["not", "-"]
     body: "Node"
@@ -117,7 +117,7 @@ class ClaimNode:
     """A claim with the free names that it declares."""
 
     node: Literal["claim"]
-    given: tuple[KeptBinding, ...]
+    given: tuple[BindingField, ...]
     body: "Node"
 
 
@@ -127,7 +127,7 @@ class DefinitionNode:
 
     node: Literal["definition"]
     name: str
-    parameters: tuple[KeptBinding, ...]
+    parameters: tuple[BindingField, ...]
     doc: str
     body: "Node"
 
@@ -144,32 +144,34 @@ Node: TypeAlias = Annotated[
     | UntilNode
     | QuantifiedNode,
     Doc("A part of a formula or of a term; node says which."),
-    Shared("node"),
+    SharedType("node"),
 ]
 
 
 def claim_node(claim: syntax.Claim) -> ClaimNode:
-    """A claim as its tree stands in JSON."""
+    """Return the JSON tree of a claim."""
     return ClaimNode(node="claim", given=_bindings(claim.given), body=node(claim.body))
 
 
-def definition_node(of: syntax.Definition) -> DefinitionNode:
-    """A definition as its tree stands in JSON."""
-    bindings, body = _bindings(of.parameters), node(of.body)
-    return DefinitionNode(node="definition", name=of.name, parameters=bindings, doc=of.doc, body=body)
+def definition_node(definition: syntax.Definition) -> DefinitionNode:
+    """Return the JSON tree of a definition."""
+    bindings, body = _bindings(definition.parameters), node(definition.body)
+    return DefinitionNode(
+        node="definition", name=definition.name, parameters=bindings, doc=definition.doc, body=body
+    )
 
 
-def node(of: Expression) -> Node:
-    """An expression as its tree stands in JSON."""
-    match of:
+def node(expression: Expression) -> Node:
+    """Return the JSON tree of an expression."""
+    match expression:
         case syntax.Literal_(bool() as value, _, _):
             return TruthNode(node="truth", value=value)
         case syntax.Literal_(value, unit, _):
             return NumberNode(node="number", value=Fraction(value), unit=unit)
         case syntax.Name():
-            return _name(of)
+            return _name(expression)
         case syntax.Call():
-            return _call(of)
+            return _call(expression)
         case syntax.Prefix(op, body, _):
             return PrefixNode(node=op, body=node(body))
         case syntax.Binary(op, left, right, _):
@@ -177,36 +179,38 @@ def node(of: Expression) -> Node:
         case syntax.Chain(op, parts, _):
             return ChainNode(node=op, parts=tuple(map(node, parts)))
         case syntax.Temporal():
-            return _temporal(of)
+            return _temporal(expression)
         case syntax.Quantified(kind, variable, domain, body, _):
             return QuantifiedNode(node=kind, variable=variable, domain=_domain(domain), body=node(body))
         case _:
-            assert_never(of)
+            assert_never(expression)
 
 
-def _name(of: syntax.Name) -> NameNode:
-    return NameNode(node="name", name=of.name)
+def _name(name: syntax.Name) -> NameNode:
+    return NameNode(node="name", name=name.name)
 
 
-def _call(of: syntax.Call) -> CallNode:
-    return CallNode(node="call", name=of.name, arguments=tuple(map(node, of.arguments)))
+def _call(call: syntax.Call) -> CallNode:
+    return CallNode(node="call", name=call.name, arguments=tuple(map(node, call.arguments)))
 
 
-def _temporal(of: syntax.Temporal) -> WithinNode | UntilNode:
-    bounds = of.bounds or Bounds(syntax.Literal_(Fraction(0)), None)
+def _temporal(temporal: syntax.Temporal) -> WithinNode | UntilNode:
+    bounds = temporal.bounds or Bounds(syntax.Literal_(Fraction(0)), None)
     low, high = node(bounds.low), None if bounds.high is None else node(bounds.high)
-    match of.op:
+    match temporal.op:
         case "F" | "G" as op:
-            return WithinNode(node=op, low=low, high=high, body=node(of.right))
+            return WithinNode(node=op, low=low, high=high, body=node(temporal.right))
         case "U":
-            assert of.left is not None  # the grammar
-            return UntilNode(node="U", low=low, high=high, left=node(of.left), right=node(of.right))
+            assert temporal.left is not None  # the grammar
+            return UntilNode(
+                node="U", low=low, high=high, left=node(temporal.left), right=node(temporal.right)
+            )
         case _:
-            assert_never(of.op)
+            assert_never(temporal.op)
 
 
-def _bindings(bindings: tuple[syntax.Binding, ...]) -> tuple[Binding, ...]:
-    return tuple(Binding(name=x.name, sort=x.sort) for x in bindings)
+def _bindings(bindings: tuple[syntax.Binding, ...]) -> tuple[BindingData, ...]:
+    return tuple(BindingData(name=x.name, sort=x.sort) for x in bindings)
 
 
 def _domain(domain: syntax.Name | syntax.Call | syntax.Group) -> NameNode | CallNode | GroupNode:

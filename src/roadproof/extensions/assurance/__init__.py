@@ -1,13 +1,18 @@
-"""Requirements, arguments and bundles that rest on checked evidence, for those who sign a safety case."""
+"""Requirements, assurance arguments and bundles for auditors, for those who sign a safety case.
+
+All of them rest on evidence that is checked again.
+"""
 
 from roadproof.extension import Extension
 
 EXTENSION = Extension(
     title="Requirements, safety cases, bundles and build results",
     audience="safety cases",
+    page="docs/how-to/assurance.md",
     needs=(
         "catalogue",
         "drivers",
+        "maps",
         "pages",
     ),
     incubating=("requirements in the formats of StrictDoc and Doorstop",),
@@ -21,7 +26,8 @@ EXTENSION = Extension(
     schemas=("schemas:TITLES",),
     checked_files={".toml": "checking:check_case"},
     options=dict.fromkeys(
-        ("prove", "check", "witness", "evaluate", "coverage", "catalogue", "preventable"), "options:Reported"
+        ("prove", "check", "witness", "evaluate", "coverage", "catalogue", "preventable"),
+        "options:BuildResultOptions",
     ),
     sections={"trace": "page:TRACE"},
 )

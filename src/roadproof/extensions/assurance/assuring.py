@@ -1,4 +1,6 @@
-"""Assurance cases in Goal Structuring Notation, with each solution checked again."""
+"""Checks assurance cases in Goal Structuring Notation: ``roadproof assurance`` and
+``roadproof.assurance``.
+"""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,13 +15,20 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.finding import Finding
 from roadproof.evidence.heading import heading
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.assurance.answers import assurance as kept
+from roadproof.extensions.assurance.answers.assurance import (
+    SCHEMA,
+    ArgumentElement,
+    ArgumentLimit,
+    ArgumentOpenPoint,
+    ArgumentSolution,
+    AssuranceData,
+)
 from roadproof.extensions.assurance.argument.argument_page import argument_page
 from roadproof.extensions.assurance.argument.drawing import as_file, draw_argument
-from roadproof.extensions.assurance.case.case import Case, Element, Kind
+from roadproof.extensions.assurance.case.case import AssuranceCase, CaseElement, ElementKind
 from roadproof.extensions.assurance.case.limits import Limit
 from roadproof.extensions.assurance.case.reading import read_case
-from roadproof.extensions.assurance.case.states import OpenPoint, State, open_points, propagate
+from roadproof.extensions.assurance.case.states import ElementState, OpenPoint, open_points, propagate
 from roadproof.extensions.assurance.keywords import AssuranceKeywords
 from roadproof.extensions.assurance.settings import Assurance
 from roadproof.extensions.assurance.solutions import SolutionCheck, check_evidence, digest_of, judge_solution
@@ -28,57 +37,59 @@ from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
-from roadproof.reasons import Reason, Why
-from roadproof.runtime.files import write_whole
+from roadproof.reasons import Reason, ReasonKind
+from roadproof.runtime.files import write_atomic
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 
 @dataclass(frozen=True, repr=False)
 class AssuranceReport:
-    """A case with the state of each element; ``solutions`` by id."""
+    """A checked assurance case: the state of each element, and the check of each solution, both by id."""
 
-    case: Case
+    case: AssuranceCase
     solutions: Mapping[str, SolutionCheck]
-    states: Mapping[str, State]
+    states: Mapping[str, ElementState]
     solver: Solver
     library: Library
 
     @property
-    def state(self) -> State:
-        """That of the top goal."""
+    def state(self) -> ElementState:
+        """The state of the top goal."""
         return self.states[self.case.top]
 
     @property
     def exit_code(self) -> ExitCode:
-        """Where the case is broken that of ``check`` for its evidence; 20 where it is open."""
-        if self.state is State.BROKEN:
-            return max(x.exit_code for x in self.solutions.values() if x.state is State.BROKEN)
-        return ExitCode.AS_EXPECTED if self.state is State.HOLDS else ExitCode.UNKNOWN
+        """The exit code: that of ``check`` for a broken case, 20 for an open one, else 0."""
+        if self.state is ElementState.BROKEN:
+            return max(x.exit_code for x in self.solutions.values() if x.state is ElementState.BROKEN)
+        return ExitCode.AS_EXPECTED if self.state is ElementState.HOLDS else ExitCode.UNKNOWN
 
     @cached_property
     def open_points(self) -> tuple[OpenPoint, ...]:
-        """The elements that keep the top goal from holding, the worst first."""
+        """The elements that prevent the top goal from holding, the worst first."""
         return tuple(open_points(self.case, self.states))
 
     @cached_property
-    def elements(self) -> tuple[Element, ...]:
-        """The elements of the case, and an assumption for each solution whose evidence has limits."""
-        limited = {x: f"{x}.limits" for x, found in self.solutions.items() if found.limits}
+    def elements(self) -> tuple[CaseElement, ...]:
+        """The elements of the case, and one derived assumption for each solution whose evidence
+        has limits.
+        """
+        limited = {x: f"{x}.limits" for x, check in self.solutions.items() if check.limits}
         derived = [
-            Element(name, Kind.ASSUMPTION, _limits_told(solution, self.solutions[solution].limits))
+            CaseElement(name, ElementKind.ASSUMPTION, _limits_text(solution, self.solutions[solution].limits))
             for solution, name in limited.items()
         ]
         return (*(_with_limits(x, limited) for x in self.case.elements.values()), *derived)
 
     def reasons(self, name: str) -> tuple[Reason, ...]:
-        """Why a solution or an undeveloped element does not hold."""
+        """Return the reasons why a solution or an undeveloped element does not hold."""
         if name in self.solutions:
             return self.solutions[name].reasons
-        return (Why.UNDEVELOPED(),)
+        return (ReasonKind.UNDEVELOPED(),)
 
     def as_data(self) -> JsonObject:
-        """As the plain data of ``--json``."""
+        """Return the plain data of ``--json``."""
         return write(self._answer)
 
     @cached_property
@@ -93,22 +104,22 @@ class AssuranceReport:
 
     @cached_property
     def _drawing(self) -> XmlElement:
-        more = {name: _evidence_told(self.case.elements[name], x) for name, x in self.solutions.items()}
-        return draw_argument(self.case.title, self.elements, self.case.top, self.states, more)
+        notes = {name: _evidence_text(self.case.elements[name], x) for name, x in self.solutions.items()}
+        return draw_argument(self.case.title, self.elements, self.case.top, self.states, notes)
 
     @cached_property
-    def _answer(self) -> kept.Answer:
-        return kept.Answer(
-                **heading(kept.SCHEMA, self.library),
+    def _answer(self) -> AssuranceData:
+        return AssuranceData(
+                **heading(SCHEMA, self.library),
                 case=str(self.case.path),
                 sha256=digest_of(self.case.path),
                 title=self.case.title,
                 solver=self.solver,
                 top=self.case.top,
                 state=self.state.value,
-                elements=tuple(map(self._kept, self.elements)),
+                elements=tuple(map(self._element_data, self.elements)),
                 open_points=tuple(
-                    kept.OpenPoint(
+                    ArgumentOpenPoint(
                         element=x.element, state=x.state.value, reasons=self.reasons(x.element), path=x.path,
                         others=x.others,
                     )
@@ -116,17 +127,17 @@ class AssuranceReport:
                 ),
             )  # fmt: skip
 
-    def _kept(self, element: Element) -> kept.Element:
-        found, said = self.solutions.get(element.id), element.evidence
+    def _element_data(self, element: CaseElement) -> ArgumentElement:
+        check, evidence = self.solutions.get(element.id), element.evidence
         solution = None
-        if found is not None and said is not None:
-            solution = kept.Solution(
-                evidence=said.path, expect=said.expect, select=said.select, entries=said.entries,
-                sha256=found.sha256, verdicts=found.verdicts, reasons=found.reasons,
+        if check is not None and evidence is not None:
+            solution = ArgumentSolution(
+                evidence=evidence.path, expect=evidence.expect, select=evidence.select,
+                entries=evidence.entries, sha256=check.sha256, verdicts=check.verdicts, reasons=check.reasons,
             )  # fmt: skip
         state = self.states.get(element.id)
         limits = () if element.line else self.solutions[element.id.removesuffix(".limits")].limits
-        return kept.Element(
+        return ArgumentElement(
             id=element.id,
             kind=element.kind.value,
             text=element.text,
@@ -135,7 +146,7 @@ class AssuranceReport:
             in_context_of=element.in_context_of,
             undeveloped=element.undeveloped,
             solution=solution,
-            limits=tuple(kept.Limit(name=x.name, told=x.told) for x in limits),
+            limits=tuple(ArgumentLimit(name=x.name, told=x.texts) for x in limits),
         )
 
     def __repr__(self) -> str:
@@ -153,12 +164,14 @@ class AssuranceReport:
             )
             yield from (f"  {reason}" for reason in self.reasons(point.element))
         counts = Counter(x.state for x in self.solutions.values())
-        told = ", ".join(f"{n} {state}" for state, n in counts.items())
-        end = f"the top goal {self.case.top} {_said(self.state)}"
-        yield f"{len(self.solutions)} solutions: {told or 'none'}; {end}"
+        summary = ", ".join(f"{n} {state}" for state, n in counts.items())
+        end = f"the top goal {self.case.top} {_state_phrase(self.state)}"
+        yield f"{len(self.solutions)} solutions: {summary or 'none'}; {end}"
 
     def _tree(self, name: str, indent: str, shown: set[str]) -> Iterator[str]:
-        """An element and those below it; one that was shown before without them."""
+        """Yield the lines of an element and those below it; elements that were listed before come without
+        support.
+        """
         element = self.case.elements[name]
         again = " (see above)" if name in shown else ""
         yield f"{indent}{name:<4} {self.states[name]:<11} {element.kind}: {element.text}{again}"
@@ -168,57 +181,58 @@ class AssuranceReport:
                 yield from self._tree(below, f"{indent}  ", shown)
 
 
-def _said(state: State) -> str:
-    return "holds" if state is State.HOLDS else f"is {state}"
+def _state_phrase(state: ElementState) -> str:
+    return "holds" if state is ElementState.HOLDS else f"is {state}"
 
 
-def _with_limits(element: Element, limited: Mapping[str, str]) -> Element:
-    """An element with the derived assumptions of the solutions that support it."""
+def _with_limits(element: CaseElement, limited: Mapping[str, str]) -> CaseElement:
+    """Return an element with the derived assumptions of its solutions added to its context."""
     more = tuple(limited[x] for x in element.supported_by if x in limited)
     if not more:
         return element
     return replace(element, in_context_of=(*element.in_context_of, *more))
 
 
-def _evidence_told(solution: Element, found: SolutionCheck) -> str:
-    """What the picture says of the evidence of a solution."""
+def _evidence_text(solution: CaseElement, check: SolutionCheck) -> str:
+    """Return the text below a solution in the picture: its path and its verdicts."""
     path = solution.evidence.path if solution.evidence else ""
-    counts = ", ".join(f"{n} {word}" for word, n in found.verdicts.items())
+    counts = ", ".join(f"{n} {word}" for word, n in check.verdicts.items())
     return f"{path}: {counts}" if counts else path
 
 
-def _limits_told(solution: str, limits: Sequence[Limit]) -> str:
-    """The limits of a solution in a line: those that are few in words, the others counted."""
-    told = [f"{x.name}: {x.told[0]}" if len(x.told) == 1 else f"{x.name} ({len(x.told)})" for x in limits]
-    return f"{solution} holds within: {'; '.join(told)}"
+def _limits_text(solution: str, limits: Sequence[Limit]) -> str:
+    """Return the limits of a solution in one line: single limits in full, several of one name as a count."""
+    texts = [f"{x.name}: {x.texts[0]}" if len(x.texts) == 1 else f"{x.name} ({len(x.texts)})" for x in limits]
+    return f"{solution} holds within: {'; '.join(texts)}"
 
 
 @takes(Assurance)
 def assurance(case: str | Path, **options: Unpack[AssuranceKeywords]) -> AssuranceReport:
-    """Check an assurance case: each solution as ``check`` does, and what follows for the goals above it.
+    """Check an assurance case: check each solution as ``check`` does, and derive the state of the goals
+    above.
 
-    ``case``: a TOML file. ``strict``: a solution is undecided where the verdict it
-    expects has no evidence, such as NONE-WITHIN. Raises ``InputError`` for a case that is not well-formed.
+    ``case``: a TOML file. ``strict``: a solution is undecided where its expected verdict has no evidence,
+    such as NONE-WITHIN. Raises ``InputError`` for a case that is not well-formed.
     """
-    asked = Assurance.of(options)
-    read = read_case(Path(case))
-    told = CheckKeywords(
-        solver=asked.solver, specs=asked.specs, effort=asked.effort, timeout=asked.timeout, jobs=asked.jobs,
-        progress=asked.progress,
+    settings = Assurance.of(options)
+    argument = read_case(Path(case))
+    check_keywords = CheckKeywords(
+        solver=settings.solver, specs=settings.specs, effort=settings.effort, timeout=settings.timeout,
+        jobs=settings.jobs, progress=settings.progress,
     )  # fmt: skip
     reports: dict[Path, tuple[Finding, ...] | RoadproofError] = {}
-    found: dict[str, SolutionCheck] = {}
-    for solution in read.solutions:
+    checks: dict[str, SolutionCheck] = {}
+    for solution in argument.solutions:
         assert solution.evidence is not None
-        path = read.path.parent / solution.evidence.path
+        path = argument.path.parent / solution.evidence.path
         if solution.evidence.expect and path not in reports:
-            reports[path] = check_evidence(path, told)
-        found[solution.id] = judge_solution(path, solution.evidence, reports.get(path), asked.strict)
-    states = propagate(read, {name: x.state for name, x in found.items()})
-    library = load_library([Path(x) for x in asked.specs])
-    report = AssuranceReport(read, found, states, asked.solver, library)
-    if asked.svg is not None:
-        write_whole(Path(asked.svg), report.picture)
-    if asked.page is not None:
-        write_whole(Path(asked.page), report.page.encode())
+            reports[path] = check_evidence(path, check_keywords)
+        checks[solution.id] = judge_solution(path, solution.evidence, reports.get(path), settings.strict)
+    states = propagate(argument, {name: x.state for name, x in checks.items()})
+    library = load_library([Path(x) for x in settings.specs])
+    report = AssuranceReport(argument, checks, states, settings.solver, library)
+    if settings.svg is not None:
+        write_atomic(Path(settings.svg), report.picture)
+    if settings.page is not None:
+        write_atomic(Path(settings.page), report.page.encode())
     return report

@@ -1,4 +1,6 @@
-"""A bundle for auditors: evidence with definitions, pinned packages, a page, and a script that checks it."""
+"""Packs bundles for auditors: evidence, definitions, pinned packages, an HTML page, and a script that checks
+all of it.
+"""
 
 import gzip
 import hashlib
@@ -19,17 +21,17 @@ from roadproof.evidence.strict import JsonObject
 from roadproof.extensions.assurance import pins as packages
 from roadproof.extensions.assurance.answers.bundle import Argument, Manifest, Package
 from roadproof.extensions.assurance.assuring import assurance
-from roadproof.extensions.assurance.case.case import Kind
+from roadproof.extensions.assurance.case.case import ElementKind
 from roadproof.extensions.assurance.keywords import BundleKeywords
 from roadproof.extensions.assurance.requirements.fingerprints import lock_path
-from roadproof.extensions.assurance.settings import Bundle as Options
+from roadproof.extensions.assurance.settings import BundleSettings as Options
 from roadproof.extensions.assurance.tracing import requirements
-from roadproof.extensions.catalogue.kept import SCHEMA as CATALOGUE
+from roadproof.extensions.catalogue.catalogue_data import SCHEMA as CATALOGUE
 from roadproof.extensions.pages.page.results import read_results
 from roadproof.extensions.pages.reporting import page
 from roadproof.frontends.api.checking import CheckReport
 from roadproof.frontends.settings.option import takes
-from roadproof.runtime.files import refuse_name, utf8, whole_file
+from roadproof.runtime.files import atomic_file, refuse_name, utf8
 from roadproof.runtime.pool import Progress
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import VERSION
@@ -47,9 +49,9 @@ _TIME = 0  # when every file in a bundle was changed, so that the same content i
 
 @dataclass(frozen=True)
 class Bundle:
-    """A bundle that was written to ``path``; ``checked``: what was found of its evidence.
+    """A bundle that was written to ``path``; ``checked``: the report on its evidence.
 
-    ``exit_code``: the gravest of ``roadproof check`` and of the cases and requirements inside.
+    ``exit_code``: the highest of ``roadproof check`` and of the cases and requirements inside.
     """
 
     path: Path
@@ -59,59 +61,62 @@ class Bundle:
     exit_code: ExitCode
 
     def as_data(self) -> JsonObject:
-        """The manifest as plain data."""
+        """Return the manifest as plain data."""
         return write(self.manifest)
 
     def __str__(self) -> str:
-        said = self.manifest
+        manifest = self.manifest
         size = f"{self.path.stat().st_size / 1e6:.1f} MB"
-        lines = [f"{self.path}: {len(said.files)} files, {size}, {said.accepted} of {said.claims} accepted"]
-        lines += [f"{x.command} {x.file}: exit code {x.exit_code}" for x in said.arguments]
+        counts = f"{len(manifest.files)} files, {size}, {manifest.accepted} of {manifest.claims} accepted"
+        lines = [f"{self.path}: {counts}"]
+        lines += [f"{x.command} {x.file}: exit code {x.exit_code}" for x in manifest.arguments]
         lines += [] if self.signature is None else [f"signature: {self.signature}"]
         return "\n".join([*lines, f"tar xzf {self.path.name}; sh {_stem(self.path)}/check.sh"])
 
 
 @takes(Options)
 def bundle(*results: str | Path, out: str | Path, **options: Unpack[BundleKeywords]) -> Bundle:
-    """Write evidence with all that its check needs into one archive, which is the same for the same content.
+    """Write evidence and everything that its check needs into one archive; equal content gives equal bytes.
 
-    ``results``: folders of evidence, and other files such as requirements, all below the working directory,
-    whose paths are kept; the tests of a catalogue come with its answer. ``out``: NAME.tar.gz.
-    ``specs``: specification files.
-    ``wheel``: the wheel of this version, where pip cannot make it; ``wheels``: whether the files of all
-    packages are inside, so that the check needs no network. ``sign``: an Ed25519 key in PEM, by which
-    NAME.tar.gz.sig is made. Raises ``InputError``, ``UsageError``, ``MissingSolverError``.
+    ``results``: folders of evidence and other files such as requirements, all below the working directory;
+    the archive keeps their paths. The tests of a catalogue are added with its answer. ``out``: NAME.tar.gz.
+    ``specs``: specification files. ``wheel``: the wheel of this version, where pip cannot build it;
+    ``wheels``: include the files of all packages, so the check needs no network. ``sign``: an Ed25519 key in
+    PEM, which signs the archive into NAME.tar.gz.sig. Raises ``InputError``, ``UsageError``,
+    ``MissingSolverError``.
     """
-    asked = Options.of(options)
+    settings = Options.of(options)
     target = Path(out)
     if not target.name.endswith(".tar.gz"):
         raise UsageError(f"out={target}: name a file that ends with .tar.gz")
-    key = None if asked.sign is None else _signing_key(Path(asked.sign))
-    named, specs = [_inside(Path(x)) for x in results], [_inside(Path(x)) for x in asked.specs]
+    key = None if settings.sign is None else _signing_key(Path(settings.sign))
+    named, specs = [_inside(Path(x)) for x in results], [_inside(Path(x)) for x in settings.specs]
     evidence = [x for x in named if x.is_dir() or x.suffix == ".json"]
     everything = dict.fromkeys([*named, *_tests_of(evidence), *_locks_of(named), *specs])
-    files = {path.as_posix(): path.read_bytes() for path in _files(everything)}
-    content, checked = _page(evidence, specs, asked.progress)
+    files = {path.as_posix(): path.read_bytes() for path in _files_below(everything)}
+    content, checked = _evidence_page(evidence, specs, settings.progress)
     files[PAGE] = content
-    pinned = _packages(files, asked.wheel, asked.wheels)
+    pinned = _pin_packages(files, settings.wheel, settings.wheels)
     files[REQUIREMENTS] = "".join(f"{x.line}\n" for x in pinned).encode()
     checkable = [x.as_posix() for x in read_results(evidence).checkable]
-    arguments = _arguments(files, specs, asked)
-    script = _script(checkable, [x.as_posix() for x in specs], checked.exit_code, asked.wheels, arguments)
+    arguments = _arguments(files, specs, settings)
+    script = _script(checkable, [x.as_posix() for x in specs], checked.exit_code, settings.wheels, arguments)
     files |= {"check.sh": script}
     manifest = _manifest(checkable, specs, checked, arguments, pinned, files)
     files[MANIFEST] = (json.dumps(write(manifest), indent=1) + "\n").encode()
     files[SUMS] = "".join(f"{_digest(x)}  {name}\n" for name, x in sorted(files.items())).encode()
-    packed = _packed(_stem(target), files)
-    with whole_file(target) as file:
-        file.write(packed)
-    signature = None if key is None else _sign(key, target, packed)
+    archive = _archive_of(_stem(target), files)
+    with atomic_file(target) as file:
+        file.write(archive)
+    signature = None if key is None else _sign(key, target, archive)
     codes = [checked.exit_code, *(ExitCode(x.exit_code) for x in arguments)]
     return Bundle(target, manifest, checked, signature, max(codes))
 
 
 def _inside(path: Path) -> Path:
-    """A path relative to the working directory. Raises ``InputError`` where it is elsewhere, or nowhere."""
+    """Return a path relative to the working directory. Raises ``InputError`` for a missing path or one
+    outside of it.
+    """
     if not path.exists():
         raise InputError(f"{path} does not exist")
     absolute = path.resolve()
@@ -121,7 +126,7 @@ def _inside(path: Path) -> Path:
 
 
 def _tests_of(evidence: Sequence[Path]) -> Iterator[Path]:
-    """The tests of catalogues, whose answers are judged again from them. Raises ``InputError``."""
+    """Yield the test files of catalogues, which the check judges again. Raises ``InputError``."""
     for result in read_results(evidence).results:
         request = result.data.get("request") if result.schema == CATALOGUE else None
         paths = request.get("paths") if isinstance(request, Mapping) else None
@@ -129,22 +134,22 @@ def _tests_of(evidence: Sequence[Path]) -> Iterator[Path]:
 
 
 def _locks_of(named: Sequence[Path]) -> Iterator[Path]:
-    """The lock files beside requirements, without which no link of them is stale."""
+    """Yield the lock files beside requirements; without them no link would be stale."""
     yield from (lock for x in named if _command_of(x) == "trace" and (lock := lock_path(x)).is_file())
 
 
-def _files(paths: Iterable[Path]) -> Iterator[Path]:
-    """All files of folders and files, once; hidden ones are left out. Raises ``InputError``."""
-    found = (y for x in paths for y in (sorted(x.rglob("*")) if x.is_dir() else [x]))
-    for file in dict.fromkeys(x for x in found if x.is_file() and not x.name.startswith(".")):
+def _files_below(paths: Iterable[Path]) -> Iterator[Path]:
+    """Yield all files of folders and files, each once, without hidden ones. Raises ``InputError``."""
+    every_file = (y for x in paths for y in (sorted(x.rglob("*")) if x.is_dir() else [x]))
+    for file in dict.fromkeys(x for x in every_file if x.is_file() and not x.name.startswith(".")):
         refuse_name(file)
         yield file
 
 
-def _page(
+def _evidence_page(
     named: Sequence[Path], specs: Sequence[Path], progress: Progress | None
 ) -> tuple[bytes, CheckReport]:
-    """The page about the evidence, and what was found of it. Raises ``UsageError`` where there is none."""
+    """Return the HTML page about the evidence and the report on it. Raises ``UsageError`` for no evidence."""
     with tempfile.TemporaryDirectory() as folder:
         if not named:
             raise UsageError("name at least one folder of evidence")
@@ -154,21 +159,26 @@ def _page(
         return utf8(made.text), made.checked
 
 
-def _packages(files: dict[str, bytes], wheel: str | Path | None, with_wheels: bool) -> list[packages.Pin]:
-    """The pins of all packages; adds the wheel of roadproof to ``files``, and those of all where wanted."""
+def _pin_packages(files: dict[str, bytes], wheel: str | Path | None, with_wheels: bool) -> list[packages.Pin]:
+    """Return the pins of all packages; add the wheel of roadproof to ``files``, or all wheels if
+    ``with_wheels``.
+    """
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        own = packages.own_wheel(folder) if wheel is None else Path(wheel)
-        files[f"wheels/{own.name}"] = own.read_bytes()
+        own_wheel = packages.own_wheel(folder) if wheel is None else Path(wheel)
+        files[f"wheels/{own_wheel.name}"] = own_wheel.read_bytes()
         pinned = packages.pins_of(["cvc5"])
         if with_wheels:
             packages.download(pinned, folder)
             files |= {f"wheels/{x.name}": x.read_bytes() for x in folder.glob("*.whl")}
-        return [packages.pin_of_wheel(own), *pinned]
+        return [packages.pin_of_wheel(own_wheel), *pinned]
 
 
 def _command_of(path: Path) -> _Command | None:
-    """The command that checks a file: an assurance case has a table of an element, requirements a [trace]."""
+    """Return the command that checks a file, None for other files.
+
+    A file with a table [trace] has requirements; one with a table of a goal or solution is an assurance case.
+    """
     if path.suffix != ".toml":
         return None
     try:
@@ -178,12 +188,18 @@ def _command_of(path: Path) -> _Command | None:
     if "trace" in content:
         return "trace"
     tables = [x for x in content.values() if isinstance(x, dict)]
-    return "assurance" if any(str(Kind.GOAL) in x or str(Kind.SOLUTION) in x for x in tables) else None
+    return (
+        "assurance"
+        if any(str(ElementKind.GOAL) in x or str(ElementKind.SOLUTION) in x for x in tables)
+        else None
+    )
 
 
-def _arguments(files: Mapping[str, bytes], specs: Sequence[Path], asked: Options) -> tuple[Argument, ...]:
-    """Check cases and requirements where only the files of the bundle are. Raises ``InputError``."""
-    commands = {name: found for name in sorted(files) if (found := _command_of(Path(name))) is not None}
+def _arguments(files: Mapping[str, bytes], specs: Sequence[Path], settings: Options) -> tuple[Argument, ...]:
+    """Check cases and requirements in a folder that has only the files of the bundle. Raises
+    ``InputError``.
+    """
+    commands = {name: kind for name in sorted(files) if (kind := _command_of(Path(name))) is not None}
     if not commands:
         return ()
     with tempfile.TemporaryDirectory() as place:
@@ -194,20 +210,22 @@ def _arguments(files: Mapping[str, bytes], specs: Sequence[Path], asked: Options
         inside = [folder / x for x in specs]
         return tuple(
             Argument(
-                command=command, file=name, exit_code=int(_exit_code(command, folder, name, inside, asked))
+                command=command, file=name, exit_code=int(_exit_code(command, folder, name, inside, settings))
             )
             for name, command in commands.items()
         )
 
 
-def _exit_code(command: _Command, folder: Path, name: str, specs: Sequence[Path], asked: Options) -> ExitCode:
-    """The exit code of the command that checks a case or requirements. Raises ``InputError``."""
+def _exit_code(
+    command: _Command, folder: Path, name: str, specs: Sequence[Path], settings: Options
+) -> ExitCode:
+    """Return the exit code of the command that checks a case or requirements. Raises ``InputError``."""
     run = assurance if command == "assurance" else requirements
     try:
-        return run(folder / name, specs=specs, jobs=asked.jobs).exit_code
+        return run(folder / name, specs=specs, jobs=settings.jobs).exit_code
     except InputError as error:
-        told = str(error).replace(f"{folder}/", "")
-        raise InputError(f"in the bundle {told}: name all files on which {name} rests") from None
+        message = str(error).replace(f"{folder}/", "")
+        raise InputError(f"in the bundle {message}: name all files on which {name} rests") from None
 
 
 def _script(
@@ -269,11 +287,11 @@ def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def _packed(name: str, files: Mapping[str, bytes]) -> bytes:
-    """An archive of files in a folder, the same for the same files."""
-    packed = io.BytesIO()
+def _archive_of(name: str, files: Mapping[str, bytes]) -> bytes:
+    """Return a tar.gz archive of files in a folder ``name``; equal files give equal bytes."""
+    buffer = io.BytesIO()
     with (
-        gzip.GzipFile(fileobj=packed, mode="wb", mtime=_TIME, filename="") as zipped,
+        gzip.GzipFile(fileobj=buffer, mode="wb", mtime=_TIME, filename="") as zipped,
         tarfile.open(fileobj=zipped, mode="w", format=tarfile.PAX_FORMAT) as archive,
     ):
         for path, content in sorted(files.items()):
@@ -281,11 +299,13 @@ def _packed(name: str, files: Mapping[str, bytes]) -> bytes:
             entry.size, entry.mtime = len(content), _TIME
             entry.mode = 0o755 if path == "check.sh" else 0o644
             archive.addfile(entry, io.BytesIO(content))
-    return packed.getvalue()
+    return buffer.getvalue()
 
 
 def _signing_key(path: Path) -> "Ed25519PrivateKey":
-    """An Ed25519 key of a PEM file without a password. Raises ``InputError``, ``MissingSolverError``."""
+    """Return the Ed25519 key of a PEM file without a password. Raises ``InputError``,
+    ``MissingSolverError``.
+    """
     try:
         from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
         from cryptography.hazmat.primitives.serialization import load_pem_private_key
@@ -302,6 +322,6 @@ def _signing_key(path: Path) -> "Ed25519PrivateKey":
 
 def _sign(key: "Ed25519PrivateKey", target: Path, content: bytes) -> Path:
     signature = target.with_name(f"{target.name}.sig")
-    with whole_file(signature) as file:
+    with atomic_file(signature) as file:
         file.write(key.sign(content))
     return signature

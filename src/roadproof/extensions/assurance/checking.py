@@ -1,4 +1,4 @@
-"""An assurance case that ``roadproof check`` is given."""
+"""Lets ``roadproof check`` accept an assurance case."""
 
 import argparse
 
@@ -10,12 +10,14 @@ from roadproof.frontends.settings.questions import Check
 
 
 def check_case(args: argparse.Namespace) -> int:
-    """Check one case with a solver. Raises ``UsageError``, ``InputError``."""
+    """Check one assurance case with a solver and return the exit code. Raises ``UsageError``,
+    ``InputError``.
+    """
     from roadproof.extensions.assurance.assuring import assurance
 
     if len(args.paths) > 1 or args.kernel or args.junit or args.sarif:
-        told = "name one CASE, and omit --kernel, --junit and --sarif"
-        raise UsageError(f"an assurance case is checked alone and with a solver: {told}")
+        remedy = "name one CASE, and omit --kernel, --junit and --sarif"
+        raise UsageError(f"an assurance case is checked alone and with a solver: {remedy}")
     keywords = {name: x for name, x in read_keywords(args, Check).items() if name != "kernel"}
     checked = assurance(args.paths[0], **keywords | {"progress": Counter()})
     print_answer(checked, args.json)

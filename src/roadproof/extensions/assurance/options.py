@@ -1,4 +1,4 @@
-"""The options with which answers of others are written for build servers."""
+"""The options that write the answers of other commands for build servers."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reported(Settings):
-    """An answer whose parts pass or fail, for build servers."""
+class BuildResultOptions(Settings):
+    """The options of a command whose results pass or fail, for build servers."""
 
     junit: Path | None = output(
         None, "--junit FILE", "write JUnit XML for a build server", read=Path, keyword=False, rare=True

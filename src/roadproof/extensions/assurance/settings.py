@@ -1,16 +1,14 @@
-"""The options of requirements, cases and bundles."""
+"""The options of the commands for requirements, assurance cases and bundles."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.extensions.assurance.options import Reported
+from roadproof.extensions.assurance.options import BuildResultOptions
 from roadproof.frontends.settings import groups
 from roadproof.frontends.settings.option import option, output
-from roadproof.frontends.settings.readers import (
-    file_names,
-)
 from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
@@ -20,9 +18,14 @@ if TYPE_CHECKING:
     from roadproof.runtime.pool import Progress
 
 
+def file_names(text: str) -> tuple[str, ...]:
+    """Names of files or folders with commas between them."""
+    return tuple(x for x in text.split(",") if x)
+
+
 @dataclass(frozen=True, kw_only=True)
-class Assurance(groups.Answered, groups.Budget, groups.Workers):
-    """Options of ``assurance``."""
+class Assurance(groups.Answered, groups.BudgetSettings, groups.Workers):
+    """The options of ``assurance``."""
 
     solver: Solver = groups.checker_of("solver that checks certificates")
     specs: Iterable[str | Path] = groups.specifications_of("the evidence")
@@ -47,8 +50,8 @@ class Assurance(groups.Answered, groups.Budget, groups.Workers):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Requirements(groups.Answered, groups.Workers, Reported):
-    """Options of ``trace``, which is ``requirements`` in Python."""
+class Requirements(groups.Answered, groups.Workers, BuildResultOptions):
+    """The options of ``trace``, called ``requirements`` in Python."""
 
     accept: bool = option(
         False, "--accept", "write the lock file: what each link rests on now is as it should be"
@@ -63,8 +66,8 @@ class Requirements(groups.Answered, groups.Workers, Reported):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bundle(groups.Answered, groups.Workers):
-    """Options of ``bundle``."""
+class BundleSettings(groups.Answered, groups.Workers):
+    """The options of ``bundle``."""
 
     specs: Iterable[str | Path] = groups.specifications_of("the evidence")
     wheel: str | Path | None = option(

@@ -1,10 +1,11 @@
-"""What tests show, mean and leave out, for those who keep a catalogue of them."""
+"""A report of what tests show and leave out, for those who keep a catalogue of them."""
 
 from roadproof.extension import Extension
 
 EXTENSION = Extension(
     title="Catalogues of tests: what they show and what is missing",
     audience="testers",
+    page="docs/how-to/catalogue.md",
     needs=(
         "drivers",
         "exchange",

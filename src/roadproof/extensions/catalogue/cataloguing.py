@@ -1,4 +1,4 @@
-"""What a catalogue of tests shows, what it misses, and drives for what is missing."""
+"""The analysis of a catalogue of tests: scenarios shown and missing, and drives for the missing ones."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -7,28 +7,28 @@ from typing import ClassVar, Unpack
 
 from roadproof.errors import UsageError
 from roadproof.evidence.claim import Objective
-from roadproof.extensions.catalogue import kept, report, settings
+from roadproof.extensions.catalogue import catalogue_data, report, settings
 from roadproof.extensions.catalogue.cases import catalogue_cases
 from roadproof.extensions.catalogue.completing import PriorResults, complete
-from roadproof.extensions.catalogue.driven import driven_name
-from roadproof.extensions.catalogue.entries import Catalogue, Concrete, Request
+from roadproof.extensions.catalogue.concrete_answer import ConcreteAnswer
+from roadproof.extensions.catalogue.curves import DriveCurves, curves_of, curves_of_drive
+from roadproof.extensions.catalogue.driver_claims import driver_claim_name
+from roadproof.extensions.catalogue.entries import CatalogueTests, ConcreteTest, Request
+from roadproof.extensions.catalogue.figures import SCENARIOS, kind_of
 from roadproof.extensions.catalogue.keywords import CatalogueKeywords
-from roadproof.extensions.catalogue.question import AskedTests, CatalogueQuestion
-from roadproof.extensions.catalogue.ranges import Span
+from roadproof.extensions.catalogue.question import CatalogueQuestion, CatalogueQuestionData
+from roadproof.extensions.catalogue.ranges import InitialValueRange
 from roadproof.extensions.catalogue.report_drives import DrivePicture, draw_tests
-from roadproof.extensions.catalogue.showing import ConcreteAnswer
-from roadproof.extensions.catalogue.tested import SCENARIOS, Targets, kind_of
-from roadproof.extensions.catalogue.traces import Courses, courses_of, of_drive
+from roadproof.extensions.catalogue.targets import Targets
 from roadproof.extensions.catalogue.view import CatalogueView
 from roadproof.extensions.catalogue.writing import CompletionAnswer, write_completions
 from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.drivers.restricting import restricted
 from roadproof.extensions.traffic.evaluate.decisions import Decision
-from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, definitions_of
-from roadproof.frontends.api.pictures import drawn
-from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.pictures import Picture, drawn, picture
+from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of, one_of
 from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.sheet import Sheet
@@ -40,69 +40,70 @@ from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 
 MOST_DRIVEN = 20
-"""Pictures of drives in which models drive SV."""
+"""The most pictures of drives in which driver models drive SV."""
 
 
 @dataclass(frozen=True, repr=False)
 class CatalogueAnswer(QuestionAnswers[CatalogueView], BuildResult):
-    """What tests show and mean."""
+    """The answer about a catalogue of tests."""
 
     question: CatalogueQuestion
     pieces: ClassVar[str] = "questions about tests"
     command: ClassVar[str] = "catalogue"
 
     def cases(self) -> Iterator[Case]:
+        """Yield a case for each test and each target."""
         home, sources = self.question.basis.specification, self.catalogue.sources
         return catalogue_cases(self.tests, self.tested, sources, home)
 
     @property
-    def catalogue(self) -> Catalogue:
+    def catalogue(self) -> CatalogueTests:
         """The tests, as they were read."""
         return self.view.catalogue
 
     @property
     def tested(self) -> Targets:
-        """What is tested, what is missing, and what is to be said of tests."""
+        """The tested and missing targets, with remarks on tests."""
         return self.view.tested
 
     @property
     def concrete(self) -> tuple[ConcreteAnswer, ...]:
-        """What concrete tests show, in order."""
+        """The answers of concrete tests, in order."""
         return self.view.concrete
 
     @property
     def decisions(self) -> tuple[tuple[str, Decision], ...]:
-        """What becomes of each test, by id, under each driver model."""
+        """The decisions of each driver model in each test, with the id of the test."""
         return self.view.decisions
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """What is to be tested, and no test shows: scenarios, classes, with ``gaps`` classes of gaps."""
+        """The targets that no test shows: scenarios, classes, and with ``gaps`` classes of gaps."""
         return self.view.missing
 
     @property
-    def figures(self) -> tuple[kept.Figure, ...]:
-        """How much is tested: by spec set, kind and road sector."""
+    def figures(self) -> tuple[catalogue_data.Figure, ...]:
+        """The numbers of tested and of all targets, by spec set, kind and road sector."""
         return self.view.figures
 
     @property
-    def spans(self) -> tuple[Span, ...]:
-        """Where it was asked, how tests of each class begin, and how drives of it can."""
+    def spans(self) -> tuple[InitialValueRange, ...]:
+        """The tested and the reached range of each initial value of each class, with ``explore``."""
         return self.view.spans
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """On files that are no tests, samples that contradict themselves, drives made with other values."""
+        """The notes on files that are no tests, contradictory samples, and drives made with other values."""
         return self.view.notes
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """Those of the notes that say which vehicles and parts of files were left out."""
+        """The notes on vehicles and parts of files that were left out."""
         return self.view.left_out
 
     @property
     def in_force(self) -> tuple[str, ...]:
-        """What was asked otherwise than by default: spec set, readings, parameters, a driver model."""
+        """The settings that differ from the defaults: spec set, readings, parameters, a driver model."""
         return self.view.in_force
 
     @property
@@ -112,53 +113,54 @@ class CatalogueAnswer(QuestionAnswers[CatalogueView], BuildResult):
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
-        """COVERED for what a test shows, else GAPS: scenarios, classes, with ``gaps`` classes of gaps.
+        """COVERED for each target that a test shows, else GAPS; with ``gaps`` also for classes of gaps.
 
-        Classes of gaps that are proved empty are IMPOSSIBLE; UNKNOWN are those not known to be.
+        A class of gaps that is proved empty is IMPOSSIBLE, one with neither proof nor drive is UNKNOWN.
         """
-        found = {x.name: Verdict.COVERED if x.tested else Verdict.GAPS for x in self.tested.targets}
+        verdicts = {x.name: Verdict.COVERED if x.tested else Verdict.GAPS for x in self.tested.targets}
         gaps = self.tested.gaps
-        if gaps.asked:
-            found |= {x.name: Verdict.COVERED if x.tested else Verdict.GAPS for x in gaps.targets}
-            found |= dict.fromkeys(gaps.open, Verdict.UNKNOWN)
-            found |= {x.name: Verdict.IMPOSSIBLE for x in gaps.empty}
-        return found
+        if gaps.required:
+            verdicts |= {x.name: Verdict.COVERED if x.tested else Verdict.GAPS for x in gaps.targets}
+            verdicts |= dict.fromkeys(gaps.open, Verdict.UNKNOWN)
+            verdicts |= {x.name: Verdict.IMPOSSIBLE for x in gaps.empty}
+        return verdicts
 
     @property
     def exit_code(self) -> ExitCode:
-        found = self.tested
-        if found.contradictions:
+        """The exit code of a contradiction, else of an open claim, else of a fault or a missing target."""
+        targets = self.tested
+        if targets.contradictions:
             return ExitCode.CROSSCHECK_FAILED
-        if found.doubts:
+        if targets.doubts:
             return ExitCode.UNKNOWN
-        return ExitCode.UNEXPECTED if found.missing or found.faults else ExitCode.AS_EXPECTED
+        return ExitCode.UNEXPECTED if targets.missing or targets.faults else ExitCode.AS_EXPECTED
 
     @property
-    def _sheet(self) -> Sheet[kept.Target]:
-        """An entry for each scenario and class, and for each class of gaps that is shown or asked for."""
-        found = self.tested
-        return report.sheet_of((*found.all_targets, *found.gaps.empty), self.verdicts)
+    def _sheet(self) -> Sheet[catalogue_data.TargetData]:
+        """An entry for each scenario and class, and for each class of gaps that is shown or required."""
+        targets = self.tested
+        return report.sheet_of((*targets.all_targets, *targets.gaps.empty), self.verdicts)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
-        """Which test shows which scenario and gap, how many tests each class has; then all tests, small."""
+        """Yield the matrix of tests and targets, small pictures of all tests, and drives of driver models."""
         yield "matrix", picture(report.draw_matrix(self.tests, self.tested, self.view.in_force))
         for k, page in enumerate(draw_tests(self._drawn()), 1):
             yield f"tests-{k}", picture(page)
         yield from self._driven_pictures()
 
     def _driven_pictures(self) -> Iterator[tuple[str, Picture]]:
-        """The drives in which models drive SV; of many those that touch POV or are undecided."""
+        """Yield drives in which driver models drive SV; of many only those that are not preventable."""
         from roadproof.frontends.report.drive import draw_drive
 
-        sides = {driven_name(test, x): x.side for test, x in self.decisions}
-        found = {name: x.drive.file for name, x in self.view.driven.items() if x.drive is not None}
-        if len(found) > MOST_DRIVEN:
-            found = {name: x for name, x in found.items() if sides.get(name) != "preventable"}
-        for name, file in [*found.items()][:MOST_DRIVEN]:
+        sides = {driver_claim_name(test, x): x.side for test, x in self.decisions}
+        files = {name: x.drive.file for name, x in self.view.driven.items() if x.drive is not None}
+        if len(files) > MOST_DRIVEN:
+            files = {name: x for name, x in files.items() if sides.get(name) != "preventable"}
+        for name, file in [*files.items()][:MOST_DRIVEN]:
             yield name, picture(draw_drive(file, self.library))
 
     def _drawn(self) -> list[DrivePicture]:
-        """The tests to be drawn, by the first scenario that each shows."""
+        """Return the pictures of tests, by the first scenario that each shows."""
         targets = [x for x in self.tested.targets if kind_of(x.name) == SCENARIOS]
         groups = {
             test: f"{number_in(x.name)} {x.words}"
@@ -166,33 +168,34 @@ class CatalogueAnswer(QuestionAnswers[CatalogueView], BuildResult):
             for test in (*x.possible, *x.tested)
         }
         runs = {x.test: x.drive for x in self.view.facts if x.relation == "runs"}
-        courses: dict[str, Courses | None] = {}
+        curves: dict[str, DriveCurves | None] = {}
         for entry in self.catalogue.entries:
-            if isinstance(entry, Concrete):
-                courses[entry.id] = courses_of(entry)
+            if isinstance(entry, ConcreteTest):
+                curves[entry.id] = curves_of(entry)
             elif (drive := runs.get(entry.id)) is not None:
-                courses[entry.id] = of_drive(drive.file)
-        drawn = [
+                curves[entry.id] = curves_of_drive(drive.file)
+        pictures = [
             DrivePicture(test, groups.get(test, "no scenario"), x)
-            for test, x in courses.items()
+            for test, x in curves.items()
             if x is not None
         ]
         order = [*dict.fromkeys(f"{number_in(x.name)} {x.words}" for x in targets), "no scenario"]
-        return sorted(drawn, key=lambda x: order.index(x.group))
+        return sorted(pictures, key=lambda x: order.index(x.group))
 
     def files(self, pictures: bool) -> dict[str, bytes]:
-        """A table for a spreadsheet, a report for CI, and the picture."""
+        """Return tables for a spreadsheet, a report for CI, and with ``pictures`` those, by file name."""
         return report.tables(self.view) | drawn(self.pictures() if pictures else {})
 
     def to_csv(self) -> str:
-        """A row a test, a column a scenario, class, gap: x shown or implied, o by some drives of the test."""
+        """Return a row for each test and a column for each target: x shown or implied, o by some drives."""
         return report.as_csv(self.tests, self.tested, self.view.in_force)
 
     def __str__(self) -> str:
+        """Return the report as text."""
         drivers, view = report.driver_lines(self.decisions), self.view
-        told = report.as_text(len(self.tests), self.tested, view.notes, view.figures, drivers)
+        text = report.as_text(len(self.tests), self.tested, view.notes, view.figures, drivers)
         ranges = report.range_lines(view.spans, self.question.basis.horizon)
-        return "\n".join([*ranges, told])
+        return "\n".join([*ranges, text])
 
     def complete(
         self,
@@ -204,30 +207,29 @@ class CatalogueAnswer(QuestionAnswers[CatalogueView], BuildResult):
         progress: Progress | None = None,
         specs: Iterable[str | Path] = (),
     ) -> CompletionAnswer:
-        """Write a drive for all that no test shows into a folder, as tests with a ``catalogue.toml``.
+        """Write a drive for each target that no test shows into a folder, as tests with a ``catalogue.toml``.
 
-        ``objective``: what drives are to be like, as for ``witness``. ``spread``: until each class has so
-        many tests, or each scenario where there are no classes, further drives that begin far from all that
-        it has (``far.distance``). ``formats``: for which other tools they are written too, as by ``export``,
-        each with an entry; ``specs``: specification files that these need. Raises ``InputError``,
-        ``UsageError``.
+        ``objective``: that of the search, as for ``witness``. ``spread``: the number of tests that each class
+        is to have, or each scenario where there are no classes; further drives begin far from all its tests
+        (``initial_values.distance``). ``formats``: other formats of ``export``, each copy with an entry;
+        ``specs``: specification files that these need. Raises ``InputError``, ``UsageError``.
         """
         one_of("objective", objective, Objective)
         if spread < 1:
             raise UsageError(f"spread={spread}: write how many tests each class is to have, 1 or more")
-        asked = self.view.asked
+        formulas = self.view.formulas
         basis = replace(self.question.basis, objective=objective)
-        made = complete(basis, asked, self.missing, self._known(), spread, jobs, progress)
+        made = complete(basis, formulas, self.missing, self._prior_results(), spread, jobs, progress)
         words = {x.name: x.words for x in (*self.tested.all_targets, *self.tested.gaps.empty)}
-        like = "" if objective == "smooth" else f", {objective}"
+        style = "" if objective == "smooth" else f", {objective}"
         titles = {
-            x.name: words[x.target] + like + (", far from the others" if x.apart is not None else "")
+            x.name: words[x.target] + style + (", far from the others" if x.apart is not None else "")
             for x in made
         }
-        return write_completions(Path(out), made, titles, asked, formats, specs)
+        return write_completions(Path(out), made, titles, formulas, formats, specs)
 
-    def _known(self) -> PriorResults:
-        """What is known of targets before drives are looked for."""
+    def _prior_results(self) -> PriorResults:
+        """The results for targets before the search for drives."""
         begins = {x.name: [y.begins for y in self.concrete if x.name in y.names] for x in self.tested.targets}
         copies = {x.entry.id for x in self.concrete if x.entry.copy_of in self.tests}
         tests = {x.name: len({*x.tested} - copies) for x in self.tested.targets}
@@ -239,27 +241,26 @@ class CatalogueAnswer(QuestionAnswers[CatalogueView], BuildResult):
 def catalogue(
     *paths: str | Path, using: Definitions | None = None, **options: Unpack[CatalogueKeywords]
 ) -> CatalogueAnswer:
-    """Which scenarios and classes the tests in folders and files show, and which nobody tests.
+    """Return the scenarios and classes that the tests in folders and files show, and the missing ones.
 
-    The first spec set of ``using`` is asked about; of further ones there are figures. ``classes``: whether
+    Targets are those of the first spec set of ``using``; further sets have figures only. ``classes``: whether
     scenarios are divided into classes (``classify``), which need whole rows of the table in ``among``;
-    ``gaps``: whether each class of gaps that there is (``coverage``) is to be tested too; ``explore``: also
-    how far drives of each class that is tested can go, and which part of that nobody tests. ``roles``,
-    ``lanes``, ``start``: whether those are looked at that a test fixes, or "any". ``near``: how far apart
-    tests that say the same may begin, in m and m/s. ``strict``: a test of whose files vehicles or parts
-    would be left out has a fault. ``preventable``, ``unpreventable``: as for ``witness``;
-    gaps are then a question for ``coverage``. ``drivers``: the driver models that are asked what becomes of
-    the scenarios that tests show, all where None. ``out``: a folder for evidence on abstract tests, gaps
-    and ranges. Raises ``InputError``, ``TextError``, ``UsageError``.
+    ``gaps``: whether each class of gaps (``coverage``) is to be tested too; ``explore``: also the range of
+    initial values of each tested class, and the part that no test covers. ``roles``, ``lanes``, ``start``:
+    "fixed" for those of a test, or "any". ``near``: the largest difference of the initial values of duplicate
+    tests (m, m/s). ``strict``: a test has a fault where vehicles or parts of its files would be left out.
+    ``preventable``, ``unpreventable``: as for ``witness``; gaps are then a question for ``coverage``.
+    ``drivers``: the driver models that are put into tests, all where None. ``out``: a folder for evidence.
+    Raises ``InputError``, ``TextError``, ``UsageError``.
     """
     given = settings.Catalogue.of(options)
     plain = definitions_of(using)
-    wanted = restricted(plain, given, given.among)
+    definitions = restricted(plain, given, given.among)
     restricting = (x for x in (given.preventable, given.unpreventable) if x is not None)
     models = tuple(dict.fromkeys((*(MODELS if given.drivers is None else given.drivers), *restricting)))
     request = Request(
         tuple(map(str, paths)),
-        wanted.sets,
+        definitions.sets,
         given.classes,
         given.gaps,
         given.explore,
@@ -270,7 +271,7 @@ def catalogue(
         models,
         given.strict,
     )
-    basis = basis_of(replace(wanted, sets=wanted.sets[:1]), given, given.vehicles)
-    numbers = wanted.among(given.among) or numbers_of(wanted.specification)
-    question = CatalogueQuestion(basis, AskedTests(request=request.kept, scenarios=tuple(numbers)))
-    return CatalogueAnswer.settled(question, given)
+    basis = basis_of(replace(definitions, sets=definitions.sets[:1]), given, given.vehicles)
+    numbers = definitions.among(given.among) or numbers_of(definitions.specification)
+    question = CatalogueQuestion(basis, CatalogueQuestionData(request=request.data, scenarios=tuple(numbers)))
+    return CatalogueAnswer.decide(question, given)

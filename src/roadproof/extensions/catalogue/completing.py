@@ -1,47 +1,53 @@
-"""Drives for what a catalogue does not test: each is looked for, judged, and described as a test."""
+"""Drives for the missing targets of a catalogue: each is searched for, judged, and becomes a test."""
 
-import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from typing import TypeAlias
 
-from roadproof.engines.search.ask import answer
-from roadproof.engines.search.initial_conditions import CLEARLY
-from roadproof.engines.search.placing import judged_as
+from roadproof.engines.search.drive_search import search_drive
+from roadproof.engines.search.outcome import SearchOutcome
+from roadproof.engines.search.placing import judge_as
+from roadproof.engines.search.usual_road import usual_road
+from roadproof.engines.setting import Search
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.extensions.catalogue.asked import Questions
-from roadproof.extensions.catalogue.entries import Concrete
+from roadproof.extensions.catalogue.drive_targets import names_shown
 from roadproof.extensions.catalogue.gaps import PREFIX
-from roadproof.extensions.catalogue.showing import begins_of, names_shown, signal_of
+from roadproof.extensions.catalogue.initial_values import (
+    FACTORS,
+    InitialValues,
+    distance_to_nearest,
+    far_from,
+    initial_values,
+)
+from roadproof.extensions.catalogue.target_formulas import TargetFormulas
 from roadproof.extensions.surveys.classify.classes import Class
-from roadproof.extensions.surveys.classify.drives import Example, find_examples
+from roadproof.extensions.surveys.classify.drives import ClassExample, find_examples
 from roadproof.extensions.surveys.classify.text import with_classes, write_classes
+from roadproof.extensions.surveys.composition import with_parts
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer
-from roadproof.library.compose import both, with_parts
-from roadproof.library.elaborate import read_claim, read_term
-from roadproof.library.scenarios import Scenario, applied, name_of, number_in
+from roadproof.library.bind import used_values
+from roadproof.library.elaborate import read_claim
+from roadproof.library.scenarios import Scenario, apply_scenario, name_of, number_in
 from roadproof.library.specification import Query, Specification
 from roadproof.questions.basis import Basis
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.reasons import NO_REASON, Reason, ReasonKind
 from roadproof.runtime import pool
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.pool import Progress
-from roadproof.world.units import unit_text
-
-Begins: TypeAlias = Mapping[str, float]
+from roadproof.runtime.timing import now, seconds_since
+from roadproof.verdict import Verdict
 
 
 @dataclass(frozen=True)
 class Completion:
-    """A drive that shows ``target``, or the proof that nothing does, or the reason why there is neither.
+    """A drive that shows ``target``, or the proof that no drive does, or the reason why there is neither.
 
-    ``name``: what the drive is called; ``apart``: how far it begins from the nearest test that shows the same
-    (``far.distance``), where drives far apart were asked for.
+    ``name``: the name of the drive; ``apart``: in a search for drives far apart, how far it begins from the
+    nearest test of the target (``initial_values.distance``).
     """
 
     target: str
@@ -54,278 +60,232 @@ class Completion:
 
 @dataclass(frozen=True)
 class PriorResults:
-    """What is known before drives are looked for.
+    """The results for targets before the search for drives.
 
-    By target, ``tests``: how many show it, and ``begins``: how each concrete one of these begins; ``gaps``:
-    what was found for classes of gaps.
+    By target, ``tests``: the number of tests that show it; ``begins``: initial values of each concrete one;
+    ``gaps``: the answers about classes of gaps.
     """
 
-    begins: Mapping[str, Sequence[Begins]] = field(default_factory=dict)
+    begins: Mapping[str, Sequence[InitialValues]] = field(default_factory=dict)
     tests: Mapping[str, int] = field(default_factory=dict)
     gaps: Mapping[str, ClassAnswer] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
-class _Further:
-    """So many drives more for a target, far from tests that begin at ``points``."""
+class _SpreadJob:
+    """A request for ``count`` drives of a target, far from tests that begin at ``points``.
+
+    ``first``: the number of the first drive.
+    """
 
     target: str
     first: int
     count: int
-    points: tuple[Begins, ...]
+    points: tuple[InitialValues, ...]
 
 
-_Job: TypeAlias = tuple[Class, ...] | int | _Further
+_Job: TypeAlias = tuple[Class, ...] | int | _SpreadJob
 
 
 @dataclass(frozen=True)
 class _CompletionJobs:
-    """Jobs for other processes: classes in which the same happens, one scenario, or drives far apart."""
+    """The jobs for other processes: classes with the same disturbances, one scenario, or drives far apart.
+
+    ``classes``: the basis whose spec set defines the classes.
+    """
 
     basis: Basis
     classes: Basis
-    asked: Questions
+    formulas: TargetFormulas
 
-    def settled(self, job: _Job) -> list[Completion]:
+    def run(self, job: _Job) -> list[Completion]:
         match job:
             case int():
                 return [self._scenario(job)]
-            case _Further():
-                return self._further(job)
-            case _:
+            case _SpreadJob():
+                return self._spread(job)
+            case tuple():
                 return [self._of_class(x) for x in find_examples(self.classes, job)]
 
-    def _of_class(self, found: Example) -> Completion:
-        name = found.one.name
-        if found.drive is None:
-            return Completion(name, reason=found.reason)
-        judged = self._as_target(found.drive.file, name)
-        return Completion(name, judged, reason=NO_REASON if judged else Why.DRIVE_REJECTED())
+    def _of_class(self, example: ClassExample) -> Completion:
+        name = example.one.name
+        if example.drive is None:
+            return Completion(name, reason=example.reason)
+        judged = self._as_target(example.drive.file, name)
+        return Completion(name, judged, reason=NO_REASON if judged else ReasonKind.DRIVE_REJECTED())
 
     def _as_target(self, file: DriveFile, target: str) -> JudgedDrive | None:
-        """A drive as one of the formula of a target, which needs no definition of classes."""
-        home = self.basis.specification
-        here = replace(file, set_name=home.set_name, values=self.basis.all_values())
-        return judged_as(here, self.asked.query_of(target), home.library)
+        """Return a drive judged by the formula of a target, which needs no definition of classes."""
+        home, query = self.basis.specification, self.formulas.query_of(target)
+        values = used_values(home.library, query.formula, self.basis.all_values())
+        return judge_as(replace(file, set_name=home.set_name, values=values), query, home.library)
 
     def _scenario(self, number: int) -> Completion:
         home = self.basis.specification
         scenario = Scenario(number, home.set_name)
-        query = applied(home, scenario)
+        query = apply_scenario(home, scenario)
         name = name_of(number)
         try:
-            outcome = answer(replace(self.basis.search(query, explain=True), scenario=number))
+            outcome = search_drive_or_unknown(
+                replace(self.basis.search(query, explain=True), scenario=number)
+            )
         except BudgetExceeded as late:
             return Completion(name, reason=late.reason)
         proof = None if outcome.impossibility is None else outcome.impossibility.certificate
-        return Completion(name, next(iter(outcome.drives), None), proof, outcome.told(()))
+        return Completion(name, next(iter(outcome.drives), None), proof, outcome.reason_with(()))
 
-    def _further(self, job: _Further) -> list[Completion]:
-        """Drives one after the other, each far from those before it; as many as are found."""
-        points, found = [*job.points], list[Completion]()
+    def _spread(self, job: _SpreadJob) -> list[Completion]:
+        """Search for drives one after the other, each far from those before it, until a search fails."""
+        points, made = [*job.points], list[Completion]()
         for k in range(job.first, job.first + job.count):
-            drive = self._far(job.target, points)
+            drive = self._far_drive(job.target, points)
             if drive is None:
-                told = Why.NONE_APART(float(FACTORS[-1]))
-                return [*found, Completion(job.target, reason=told, name=f"{job.target}-{k}")]
-            begins = begins_of(drive.file)
-            apart = nearest(begins, points)
-            found.append(Completion(job.target, drive, name=f"{job.target}-{k}", apart=apart))
+                reason = ReasonKind.NONE_APART(float(FACTORS[-1]))
+                return [*made, Completion(job.target, reason=reason, name=f"{job.target}-{k}")]
+            begins = initial_values(drive.file)
+            apart = distance_to_nearest(begins, points)
+            made.append(Completion(job.target, drive, name=f"{job.target}-{k}", apart=apart))
             points.append(begins)
-        return found
+        return made
 
-    def _far(self, target: str, points: Sequence[Begins]) -> JudgedDrive | None:
+    def _far_drive(self, target: str, points: Sequence[InitialValues]) -> JudgedDrive | None:
+        """Return a drive of a target as far from the points as one is found."""
         for factor in FACTORS if points else FACTORS[-1:]:
             more = far_from(points, factor, self.classes.specification)
-            file = self._found(target, more)
+            file = self._search(target, more)
             judged = None if file is None else self._as_target(file, target)
             if judged is not None:
                 return judged
         return None
 
-    def _found(self, target: str, more: Query | None) -> DriveFile | None:
+    def _search(self, target: str, more: Query | None) -> DriveFile | None:
+        """Search for a drive of a target on which the formula ``more`` holds too."""
         if number_in(target) is None:
-            assert self.asked.classes is not None
-            one = next(x for x in self.asked.classes.all() if x.name == target)
+            assert self.formulas.classes is not None
+            one = next(x for x in self.formulas.classes.all() if x.name == target)
             [example] = find_examples(self.classes, [one], (), more)
             return None if example.drive is None else example.drive.file
-        query = with_parts(self.asked.query_of(target), [] if more is None else [more])
-        outcome = answer(self.basis.search(query))
+        query = with_parts(self.formulas.query_of(target), [] if more is None else [more])
+        outcome = search_drive_or_unknown(self.basis.search(query))
         return outcome.drives[0].file if outcome.drives else None
 
 
 def complete(
     basis: Basis,
-    asked: Questions,
+    formulas: TargetFormulas,
     missing: Sequence[str],
-    known: PriorResults | None = None,
+    prior: PriorResults | None = None,
     spread: int = 1,
-    hands: Jobs = None,
+    executor: Jobs = None,
     progress: Progress | None = None,
 ) -> list[Completion]:
-    """A drive for each class, each scenario and each class of gaps among ``missing``, each with a name.
+    """Return a drive for each class, each scenario and each class of gaps among ``missing``, with names.
 
-    Scenarios and gaps that a drive for another target shows are not looked for again. With ``spread``, each
+    Scenarios and gaps that a drive for another target shows are not searched for again. With ``spread``, each
     class has so many tests in the end, or each scenario where there are no classes; drives are like
     ``basis.objective``.
     """
-    known = known or PriorResults()
-    working = _CompletionJobs(basis, replace(basis, specification=specification_of(asked), sets=()), asked)
-    found: list[Completion] = []
+    prior = prior or PriorResults()
+    divided = replace(basis, specification=specification_of(formulas), sets=())
+    jobs_of = _CompletionJobs(basis, divided, formulas)
+    made: list[Completion] = []
 
-    def ask(jobs: Sequence[_Job]) -> None:
-        done = pool.work(working.settled, jobs, hands, _lost, progress, "drives")
-        found.extend(x for made in pool.in_order(done) for x in made)
+    def run(jobs: Sequence[_Job]) -> None:
+        done = pool.work(jobs_of.run, jobs, executor, _lost, progress, "drives")
+        made.extend(x for completions in pool.in_order(done) for x in completions)
 
-    ask(_of_classes(asked, missing))
-    shown = {x for one in found if one.drive for x in names_shown(one.drive, asked)}
-    ask([n for name in missing if name not in shown and (n := number_in(name)) is not None])
-    found += _of_gaps(basis, asked, [x for x in missing if x.startswith(PREFIX)], known)
+    run(_class_jobs(formulas, missing))
+    shown = {x for one in made if one.drive for x in names_shown(one.drive, formulas)}
+    run([n for name in missing if name not in shown and (n := number_in(name)) is not None])
+    made += _of_gaps(basis, formulas, [x for x in missing if x.startswith(PREFIX)], prior)
     if spread > 1:
-        ask(_further(asked, found, known, spread))
-    return [replace(x, name=x.name or x.target) for x in found]
+        run(_spread_jobs(formulas, made, prior, spread))
+    return [replace(x, name=x.name or x.target) for x in made]
 
 
-def specification_of(asked: Questions) -> Specification:
-    """The set in which classes have names; that of the scenarios where there are none."""
-    if asked.classes is None:
-        return asked.specification
-    return with_classes(write_classes(asked.classes, asked.specification), asked.specification)
+def specification_of(formulas: TargetFormulas) -> Specification:
+    """Return the spec set that defines the classes; that of the scenarios where there are none."""
+    if formulas.classes is None:
+        return formulas.specification
+    return with_classes(write_classes(formulas.classes, formulas.specification), formulas.specification)
 
 
-def _of_classes(asked: Questions, missing: Sequence[str]) -> list[tuple[Class, ...]]:
-    if asked.classes is None:
+def _class_jobs(formulas: TargetFormulas, missing: Sequence[str]) -> list[tuple[Class, ...]]:
+    """Return the missing classes, those with the same disturbances as one job."""
+    if formulas.classes is None:
         return []
-    wanted = {*missing}
-    groups = (tuple(x for x in alike if x.name in wanted) for alike in asked.classes.alike())
+    groups = (tuple(x for x in alike if x.name in missing) for alike in formulas.classes.alike())
     return [x for x in groups if x]
 
 
-def _of_gaps(basis: Basis, asked: Questions, missing: Sequence[str], known: PriorResults) -> list[Completion]:
-    """The drives that were found when it was asked which classes are empty; one may be for several."""
-    found: list[Completion] = []
+def _of_gaps(
+    basis: Basis, formulas: TargetFormulas, missing: Sequence[str], prior: PriorResults
+) -> list[Completion]:
+    """Return the drives from the search for empty classes; one may show several classes."""
+    made: list[Completion] = []
     shown: set[str] = set()
     for name in missing:
         if name in shown:
             continue
-        drive = known.gaps[name].gaps[0].drive
+        drive = prior.gaps[name].gaps[0].drive
         if basis.objective != "smooth":
-            drive = _reshaped(basis, drive, name, asked) or drive
-        shown.update(names_shown(drive, asked))
-        reason = NO_REASON if name in shown else Why.NO_GAP()
-        found.append(Completion(name, drive if name in shown else None, reason=reason))
-    return found
+            drive = _reshape(basis, drive, name, formulas) or drive
+        shown.update(names_shown(drive, formulas))
+        reason = NO_REASON if name in shown else ReasonKind.NO_GAP()
+        made.append(Completion(name, drive if name in shown else None, reason=reason))
+    return made
 
 
-def _reshaped(basis: Basis, drive: JudgedDrive, name: str, asked: Questions) -> JudgedDrive | None:
-    """Another drive of the same gap, as the basis wants them."""
+def _reshape(basis: Basis, drive: JudgedDrive, name: str, formulas: TargetFormulas) -> JudgedDrive | None:
+    """Search for another drive of the same gap with the objective of the basis."""
     query = read_claim(basis.specification, drive.file.formula)
     try:
-        outcome = answer(basis.search(query, drive.file.road))
+        outcome = search_drive_or_unknown(basis.search(query, drive.file.road))
     except UsageError:  # a grid that is too fine, a comparison too steep
         return None
-    return next((x for x in outcome.drives if name in names_shown(x, asked)), None)
+    return next((x for x in outcome.drives if name in names_shown(x, formulas)), None)
 
 
-def _further(
-    asked: Questions, found: Sequence[Completion], known: PriorResults, spread: int
-) -> list[_Further]:
-    """What is asked for until each class has so many tests; or each scenario, where there are no classes."""
-    if asked.classes is None:
-        names = [name_of(number) for number in asked.numbers]
+def _spread_jobs(
+    formulas: TargetFormulas, made: Sequence[Completion], prior: PriorResults, spread: int
+) -> list[_SpreadJob]:
+    """Return the jobs until each class, or each scenario without classes, has ``spread`` tests."""
+    if formulas.classes is None:
+        names = [name_of(number) for number in formulas.numbers]
     else:
-        names = [one.name for one in asked.classes.all()]
+        names = [one.name for one in formulas.classes.all()]
     jobs = []
     for name in names:
-        made = [x.drive for x in found if x.drive is not None and name in names_shown(x.drive, asked)]
-        points = (*known.begins.get(name, ()), *(begins_of(x.file) for x in made))
-        tests = known.tests.get(name, 0) + len(made)
+        drives = [x.drive for x in made if x.drive is not None and name in names_shown(x.drive, formulas)]
+        points = (*prior.begins.get(name, ()), *(initial_values(x.file) for x in drives))
+        tests = prior.tests.get(name, 0) + len(drives)
         if 0 < tests < spread:
-            jobs.append(_Further(name, tests + 1, spread - tests, points))
+            jobs.append(_SpreadJob(name, tests + 1, spread - tests, points))
     return jobs
 
 
 def _lost(job: _Job, reason: Reason) -> list[Completion]:
+    """Return the completions of a job whose process was lost."""
     match job:
         case int():
             return [Completion(name_of(job), reason=reason)]
-        case _Further():
+        case _SpreadJob():
             return [Completion(job.target, reason=reason, name=f"{job.target}-{job.first}")]
-        case _:
+        case tuple():
             return [Completion(x.name, reason=reason) for x in job]
 
 
-# --- catalogue.toml of drives that complete a catalogue --------------------------------------------
+def search_drive_or_unknown(search: Search) -> SearchOutcome:
+    """Run ``search_drive``, but return UNKNOWN with the reason where the clock cuts it off."""
+    started = now()
+    try:
+        return search_drive(search)
+    except BudgetExceeded as late:
+        return unknown_outcome(search, late.reason, seconds_since(started))
 
 
-def catalogue_text(tests: Iterable[Concrete]) -> str:
-    """Tests as TOML; basic strings and arrays of some are written as in JSON."""
-    return "\n".join(
-        "[[test]]\n" + "".join(f"{x} = {json.dumps(y, ensure_ascii=False)}\n" for x, y in _said(test).items())
-        for test in tests
-    )
-
-
-def _said(test: Concrete) -> dict[str, object]:
-    said: dict[str, object] = {"id": test.id, "title": test.title, "file": test.place, "claims": test.claims}
-    return said | ({"copy_of": test.copy_of} if test.copy_of else {})
-
-
-# --- how far apart drives begin --------------------------------------------------------------------
-
-FACTORS = (Fraction(6), Fraction(3), Fraction(3, 2), Fraction(3, 4))
-"""How far is tried, from the farthest on."""
-MOST_POINTS = 8
-"""From so many drives, those that are farthest apart, a search is told to keep away."""
-
-
-def distance(one: Mapping[str, float], other: Mapping[str, float]) -> float:
-    """How far apart two drives begin: 1 for 15 m along, 2.5 m across or 4 m/s in one of the numbers.
-
-    Numbers that only one of them has do not count. Infinite where they have none in common.
-    """
-    apart = (abs(one[n] - other[n]) / float(_clearly(n)) for n in one if n in other)
-    return max(apart, default=float("inf"))
-
-
-def nearest(begins: Mapping[str, float], points: Iterable[Mapping[str, float]]) -> float:
-    """How far a drive begins from the nearest of others."""
-    return min((distance(begins, point) for point in points), default=float("inf"))
-
-
-def far_from(
-    points: Sequence[Mapping[str, float]], factor: Fraction, specification: Specification
-) -> Query | None:
-    """That a drive begins ``factor`` or more from each of the points; None where there are none."""
-    parts = [read_claim(specification, _apart(specification, point, factor)) for point in _spread(points)]
-    return both(*parts) if parts else None
-
-
-def _apart(specification: Specification, point: Mapping[str, float], factor: Fraction) -> str:
-    """That one of the numbers differs by ``factor`` times what is clearly different, as text."""
-    either_side = []
-    for name, value in point.items():
-        by, unit = factor * _clearly(name), unit_text(read_term(specification, name)[1])
-        middle = Fraction(value).limit_denominator(1000)
-        either_side.append(f"{name} - ({_number(middle + by)}) * 1 {unit} >= 0 {unit}")
-        either_side.append(f"({_number(middle - by)}) * 1 {unit} - ({name}) >= 0 {unit}")
-    return " or ".join(either_side)
-
-
-def _number(value: Fraction) -> str:
-    return str(value) if value >= 0 else f"0 - {-value}"
-
-
-def _spread(points: Sequence[Mapping[str, float]]) -> list[Mapping[str, float]]:
-    """At most ``MOST_POINTS`` of the points: the first, and in turn the one that is farthest from these."""
-    chosen, left = [*points[:1]], [*points[1:]]
-    while left and len(chosen) < MOST_POINTS:
-        farthest = max(left, key=lambda point: nearest(point, chosen))
-        left.remove(farthest)
-        chosen.append(farthest)
-    return chosen
-
-
-def _clearly(name: str) -> Fraction:
-    """What is clearly different in a number of a beginning."""
-    return CLEARLY[signal_of(name)]
+def unknown_outcome(search: Search, reason: Reason, seconds: float = 0.0) -> SearchOutcome:
+    """Return an UNKNOWN outcome of a search with this reason."""
+    road = search.setting.road or usual_road(search.query.formula)
+    fields = (search.scenario, search.specification.set_name, search.query, road.name)
+    return SearchOutcome(*fields, Verdict.UNKNOWN, reason, seconds={"all": seconds})

@@ -1,4 +1,4 @@
-"""The tests of a catalogue, concrete and abstract ones, and what is asked of them."""
+"""The tests of a catalogue, concrete and abstract ones, and the request about them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -6,22 +6,22 @@ from typing import TypeAlias
 
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.codec import read
-from roadproof.extensions.catalogue.kept import KeptRequest, Look
+from roadproof.extensions.catalogue.catalogue_data import FixedOrAny, RequestData
 from roadproof.extensions.drivers.models import MODELS
-from roadproof.library.specification import Query, unknown
+from roadproof.library.specification import Query, unknown_name
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
 
 
 @dataclass(frozen=True)
-class Concrete:
-    """A test whose vehicles move as it says.
+class ConcreteTest:
+    """A test with a motion of all vehicles: a drive or samples.
 
     ``place``: a drive file, samples, a scenario of CommonRoad, or vehicles of a recording such as
     ``01_tracks.csv:12,15``. ``claims``: the scenarios and classes that it is meant to show, by definition.
-    ``copy_of``: the id of the test of which it is the same in another format, if any. ``roles``: the name of
-    the vehicle of each role that it names. ``fault``: why the test cannot be read, concrete or not; its place
-    is then the file that names it where no other is known. ``strict``: nothing of its files may be left out.
+    ``copy_of``: the id of the test of which it is a copy in another format. ``roles``: the vehicle of each
+    role that it names. ``fault``: why the test cannot be read, concrete or not; ``place`` is then the file
+    that names the test, unless a file of its own is known. ``strict``: nothing of its files may be left out.
     """
 
     id: str
@@ -35,10 +35,10 @@ class Concrete:
 
 
 @dataclass(frozen=True)
-class Abstract:
-    """A test that is a formula, ranges of values included, on a road; every drive of it is one way to run it.
+class AbstractTest:
+    """A test that is a formula with its ranges of values; every drive of it is one way to run it.
 
-    ``road`` None is the usual road of what is looked for; ``vehicles``: models by name.
+    ``road`` None is the usual road of the claim; ``vehicles``: models by name.
     """
 
     id: str
@@ -49,24 +49,24 @@ class Abstract:
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
 
 
-Entry: TypeAlias = Concrete | Abstract
+Entry: TypeAlias = ConcreteTest | AbstractTest
 
 
 @dataclass(frozen=True)
-class Catalogue:
-    """The tests, in order, and ``notes`` on files that are none; ``sources``: the file that names each."""
+class CatalogueTests:
+    """The tests in order, and ``notes`` on files that are no tests; ``sources``: the file that names each."""
 
     entries: tuple[Entry, ...]
     notes: tuple[str, ...] = ()
     sources: Mapping[str, str] = field(default_factory=dict)
 
 
-# --- what is asked of them ------------------------------------------------------------------------
+# --- the request ----------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Freedom:
-    """What is looked at beside what a test fixes: all roles, all lanes, all instants."""
+    """The choices that are free: all roles, all lanes, all instants, or those that a test fixes."""
 
     roles: bool = False
     lanes: bool = False
@@ -78,13 +78,13 @@ _CHOICES = ("roles", "lanes", "start")
 
 @dataclass(frozen=True)
 class Request:
-    """``paths``: folders of tests, and tests. ``sets``: spec sets, of which the first is asked about.
+    """A request about tests. Raises ``UsageError``.
 
-    ``classes``, ``gaps``, ``explore``: whether classes of scenarios, classes of gaps and ranges are asked
-    about too. ``roles``, ``lanes``, ``start``: whether those are looked at that a test fixes, or "any".
-    ``near``: how far apart tests that say the same may begin, in m and m/s. ``drivers``: the models that are
-    asked what becomes of tests. ``strict``: a test of whose files vehicles or parts would be left out has a
-    fault. Raises ``UsageError``.
+    ``paths``: folders of tests, and tests. ``sets``: spec sets; figures alone for those after the first.
+    ``classes``, ``gaps``, ``explore``: whether classes of scenarios, classes of gaps and ranges are targets
+    too. ``roles``, ``lanes``, ``start``: "fixed" for those of the test, or "any". ``near``: the largest
+    difference of the initial values of duplicates (m, m/s). ``drivers``: the driver models that are put into
+    tests. ``strict``: a test has a fault where vehicles or parts of its files would be left out.
     """
 
     paths: tuple[str, ...]
@@ -92,9 +92,9 @@ class Request:
     classes: bool = True
     gaps: bool = False
     explore: bool = False
-    roles: Look = "fixed"
-    lanes: Look = "fixed"
-    start: Look = "fixed"
+    roles: FixedOrAny = "fixed"
+    lanes: FixedOrAny = "fixed"
+    start: FixedOrAny = "fixed"
     near: float = 0.5
     drivers: tuple[str, ...] = tuple(MODELS)
     strict: bool = False
@@ -105,24 +105,26 @@ class Request:
                 raise UsageError(f"{name}={getattr(self, name)!r}: write 'fixed' or 'any'")
         for name in self.drivers:
             if name not in MODELS:
-                raise UsageError(f"drivers={','.join(self.drivers)}: {unknown('driver model', name, MODELS)}")
+                raise UsageError(
+                    f"drivers={','.join(self.drivers)}: {unknown_name('driver model', name, MODELS)}"
+                )
         if not self.near >= 0:
             raise UsageError(f"near={self.near}: write a number, 0 or more")
 
     @property
     def freedom(self) -> Freedom:
-        """What is looked at beside what a test fixes."""
+        """The free choices."""
         return Freedom(self.roles == "any", self.lanes == "any", self.start == "any")
 
     @property
-    def kept(self) -> KeptRequest:
-        """As an index has it."""
-        return KeptRequest(**vars(self))
+    def data(self) -> RequestData:
+        """The request as plain data."""
+        return RequestData(**vars(self))
 
 
 def read_request(content: object, where: str) -> Request:
-    """A request as an index has it. Raises ``InputError``."""
+    """Return the request of plain data. Raises ``InputError``."""
     try:
-        return Request(**vars(read(KeptRequest, content, where)))
+        return Request(**vars(read(RequestData, content, where)))
     except UsageError as error:
         raise InputError(f"{where}: {error}") from None

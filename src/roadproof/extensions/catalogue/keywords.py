@@ -1,4 +1,4 @@
-"""Keyword arguments of each question; made by ``roadproof.frontends.settings.keywords_file``."""
+"""Keyword arguments of each question; ``make generated`` writes this file."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from roadproof.frontends.settings.keywords import BudgetKeywords, ModelsKeywords
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from roadproof.extensions.catalogue.kept import Look
+    from roadproof.extensions.catalogue.catalogue_data import FixedOrAny
     from roadproof.frontends.api.definitions import Among
 
 
@@ -23,9 +23,9 @@ class CatalogueKeywords(ModelsKeywords, BudgetKeywords, RunKeywords, PreventionK
     classes: bool
     gaps: bool
     explore: bool
-    roles: Look
-    lanes: Look
-    start: Look
+    roles: FixedOrAny
+    lanes: FixedOrAny
+    start: FixedOrAny
     strict: bool
     near: float
     drivers: Iterable[str] | None

@@ -1,20 +1,20 @@
-"""A question inside another one: its claims with a prefix before their names."""
+"""A question inside another one, with a prefix before the names of its claims."""
 
 from collections.abc import Sequence
 from typing import Any
 
-from roadproof.evidence.answer import Answer
+from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.claim import HELP
 from roadproof.evidence.finding import Finding
 from roadproof.questions.question import (
+    Annotating,
     Answers,
-    Batch,
-    Doubting,
+    EvidencePlace,
+    FindsUnknowns,
     OwnWork,
-    Place,
     Question,
+    QuestionBatch,
     Steps,
-    Telling,
     WorkByName,
 )
 from roadproof.reasons import Reason
@@ -23,19 +23,19 @@ from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)
-class Nested:
-    """A question whose claims have names with ``prefix``: before all, but for the word of what only helps."""
+class NestedQuestion:
+    """A question whose claims have names with ``prefix``, after ``HELP`` where a claim only helps."""
 
     prefix: str
     question: Question[Any]
 
-    def batches(self, known: Answers) -> Sequence[Batch]:
-        """Return its batches, given what is known of the whole question."""
+    def batches(self, known: Answers) -> Sequence[QuestionBatch]:
+        """Return its batches, given the known answers of the whole question."""
         return [
             NestedBatch(self.prefix, x, self.question.work) for x in self.question.batches(self.own(known))
         ]
 
-    def own(self, known: Answers) -> dict[str, Answer]:
+    def own(self, known: Answers) -> dict[str, ClaimAnswer]:
         """Return the answers to its own claims, by their own names."""
         return {own_name(self.prefix, n): x for n, x in known.items() if self.has(n)}
 
@@ -44,21 +44,25 @@ class Nested:
         return name.removeprefix(HELP).startswith(self.prefix)
 
     def label(self, name: str) -> str:
-        """Return what one of its claims is about."""
+        """Return the label of one of its claims."""
         return self.question.label(own_name(self.prefix, name))
 
-    def place(self, place: Place) -> Place:
-        """Return where evidence is, by its own names."""
+    def place(self, place: EvidencePlace) -> EvidencePlace:
+        """Return the place of evidence by its own names."""
         return lambda name, answer: place(full_name(self.prefix, name), answer)
 
-    def tell(self, name: str, answer: Answer, found: Finding) -> Finding:
-        """Return what was found of one of its answers, with what it shows."""
-        asked = self.question
-        return asked.tell(own_name(self.prefix, name), answer, found) if isinstance(asked, Telling) else found
+    def annotate(self, name: str, answer: ClaimAnswer, finding: Finding) -> Finding:
+        """Return the finding about one of its answers, with what the answer shows."""
+        question = self.question
+        return (
+            question.annotate(own_name(self.prefix, name), answer, finding)
+            if isinstance(question, Annotating)
+            else finding
+        )
 
-    def doubts(self, known: Answers) -> Sequence[tuple[str, Reason]]:
-        """Return what its answers leave in doubt, given what is known of the whole question."""
-        return self.question.doubts(self.own(known)) if isinstance(self.question, Doubting) else ()
+    def unknowns(self, known: Answers) -> Sequence[tuple[str, Reason]]:
+        """Return what its answers leave in doubt, given the known answers of the whole question."""
+        return self.question.unknowns(self.own(known)) if isinstance(self.question, FindsUnknowns) else ()
 
 
 def full_name(prefix: str, name: str) -> str:
@@ -78,7 +82,7 @@ class NestedBatch:
     """A batch with a prefix before the names of its claims."""
 
     prefix: str
-    batch: Batch
+    batch: QuestionBatch
     allowed: Work
 
     @property
@@ -93,7 +97,7 @@ class NestedBatch:
                 return self.batch.work_of(own_name(self.prefix, name))
             case OwnWork():
                 return self.batch.work
-            case _:
+            case _:  # open: any other batch
                 return self.allowed
 
     def steps(self) -> Steps:

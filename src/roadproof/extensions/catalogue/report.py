@@ -1,4 +1,4 @@
-"""What a catalogue tests, to look at: lines, a table for a spreadsheet, a report for CI, a matrix."""
+"""Reports of a catalogue: text, tables for a spreadsheet, a report for CI, a matrix."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -8,29 +8,31 @@ from textwrap import indent
 from typing import Any
 
 from roadproof.extensions.catalogue.cases import catalogue_cases
+from roadproof.extensions.catalogue.catalogue_data import Figure, Remark, TargetData
+from roadproof.extensions.catalogue.figures import CLASSES, SCENARIOS, kind_of
 from roadproof.extensions.catalogue.gaps import PREFIX
-from roadproof.extensions.catalogue.kept import Figure, Remark, Target
-from roadproof.extensions.catalogue.ranges import Span
-from roadproof.extensions.catalogue.tested import CLASSES, SCENARIOS, Targets, kind_of
+from roadproof.extensions.catalogue.ranges import InitialValueRange
+from roadproof.extensions.catalogue.targets import Targets
 from roadproof.extensions.catalogue.view import CatalogueView
 from roadproof.extensions.drivers.models import MODELS
-from roadproof.extensions.traffic.evaluate.decisions import Decision, said
+from roadproof.extensions.traffic.evaluate.decisions import Decision, decision_text
 from roadproof.frontends.api.build_result import formats, written
+from roadproof.frontends.report.csv_table import csv_text
 from roadproof.frontends.report.figures import count_axis, make_figure
-from roadproof.frontends.report.sheet import Column, Mark, Sheet, csv_text
+from roadproof.frontends.report.sheet import ColouredText, Column, Sheet
 from roadproof.frontends.report.sheet import as_csv as csv_of
 from roadproof.library.scenarios import number_in
 from roadproof.runtime.files import utf8
 from roadproof.verdict import ExitCode, Verdict
 
-MOST_TOLD, MOST_ALIKE = 40, 8
+MOST_LINES, MOST_IN_FULL = 40, 8
 _STARTS = ("Ve0", "dV0", "Vf0", "Vy", "Gx", "headway", "dx0", "dx0_f", "dy0")
 
 
 def driver_lines(decisions: Sequence[tuple[str, Decision]]) -> Iterator[str]:
-    """How often each model comes to which side, and a line for each test and scenario.
+    """Yield the count of each side by driver model, and a line for each test and scenario.
 
-    Of many tests only those are told that some model does not prevent.
+    Of many tests only those get a line that some model does not prevent.
     """
     if not decisions:
         return
@@ -38,20 +40,20 @@ def driver_lines(decisions: Sequence[tuple[str, Decision]]) -> Iterator[str]:
     for model in MODELS:
         sides = [x.side for _, x in decisions if x.driver == model]
         if sides:
-            told = ", ".join(f"{sides.count(side)} {side}" for side in dict.fromkeys(sides))
-            yield f"  {model} ({MODELS[model].title}): {told}"
+            counts = ", ".join(f"{sides.count(side)} {side}" for side in dict.fromkeys(sides))
+            yield f"  {model} ({MODELS[model].title}): {counts}"
     groups = groupby(decisions, lambda x: (x[0], x[1].scenario))
     every = [(test, scenario, [x for _, x in those]) for (test, scenario), those in groups]
     hit = [x for x in every if any(y.side in ("unpreventable", "partly") for y in x[2])]
-    told_of = (every if len(every) <= MOST_ALIKE else hit)[:MOST_TOLD]
-    yield from (line for x in told_of for line in _lines_of_test(*x))
-    if len(told_of) < len(every):
-        yield f"  … {len(every) - len(told_of)} more in drivers.csv (--out)"
+    printed = (every if len(every) <= MOST_IN_FULL else hit)[:MOST_LINES]
+    yield from (line for x in printed for line in _lines_of_test(*x))
+    if len(printed) < len(every):
+        yield f"  … {len(every) - len(printed)} more in drivers.csv (--out)"
 
 
 def _lines_of_test(test: str, scenario: str, those: Sequence[Decision]) -> Iterator[str]:
-    """The sides of all models in one line, and below it each reason with its models."""
-    yield f"  {test} {scenario}: " + ", ".join(f"{x.driver} {said(x)}" for x in those)
+    """Yield the sides of all models in one line, and below it each reason with its models."""
+    yield f"  {test} {scenario}: " + ", ".join(f"{x.driver} {decision_text(x)}" for x in those)
     for reason in dict.fromkeys(x.reason for x in those if x.reason):
         models = [x.driver for x in those if x.reason == reason]
         whose = "" if len(models) == len(those) else f"{', '.join(models)}: "
@@ -59,7 +61,7 @@ def _lines_of_test(test: str, scenario: str, those: Sequence[Decision]) -> Itera
 
 
 def drivers_csv(decisions: Sequence[tuple[str, Decision]]) -> str:
-    """A row for each test, scenario and model; of the state when the manoeuvre begins in SI units."""
+    """Return a row for each test, scenario and model, with the state at the begin of the manoeuvre (SI)."""
     columns: tuple[Column[tuple[str, Decision]], ...] = (
         Column("test", lambda x: x[0]),
         Column("scenario", lambda x: x[1].scenario),
@@ -85,72 +87,72 @@ _INCH_A_LETTER = 0.06  # of labels at 7 points
 
 
 def as_text(
-    tests: int, found: Targets, notes: Sequence[str], counted: Sequence[Figure], drivers: Iterable[str] = ()
+    tests: int, targets: Targets, notes: Sequence[str], figures: Sequence[Figure], drivers: Iterable[str] = ()
 ) -> str:
-    """How much is tested, in ``counted`` figures, what is missing, and every remark.
+    """Return the text of figures, missing targets and remarks.
 
-    ``drivers``: lines on what becomes of tests under driver models.
+    ``tests``: the number of tests; ``drivers``: lines on decisions of driver models.
     """
-    lines = [f"{tests} test{'s' * (tests != 1)}", *_figures(counted), *_gaps(found), *drivers]
-    lines += _listed("not tested", [f"{x.name}: {x.words}" for x in found.missing])
-    for heading, remarks in headings(found).items():
-        lines += _listed(heading, [f"{' and '.join(x.tests)}: {x.told}" for x in remarks])
-    return "\n".join([*lines, *(f"note: {x}" for x in notes), _summary(found)])
+    lines = [f"{tests} test{'s' * (tests != 1)}", *_figures(figures), *_gaps(targets), *drivers]
+    lines += _section("not tested", [f"{x.name}: {x.words}" for x in targets.missing])
+    for heading, remarks in headings(targets).items():
+        lines += _section(heading, [f"{' and '.join(x.tests)}: {x.told}" for x in remarks])
+    return "\n".join([*lines, *(f"note: {x}" for x in notes), _summary(targets)])
 
 
-def kinds(found: Targets) -> dict[str, list[Target]]:
-    """The targets by what they are."""
-    return {kind: [x for x in found.targets if kind_of(x.name) == kind] for kind in (SCENARIOS, CLASSES)}
+def kinds(targets: Targets) -> dict[str, list[TargetData]]:
+    """Return the scenarios and the classes among the targets, by kind."""
+    return {kind: [x for x in targets.targets if kind_of(x.name) == kind] for kind in (SCENARIOS, CLASSES)}
 
 
-def _figures(counted: Sequence[Figure]) -> Iterator[str]:
-    """A line a figure, those of road sectors below; which spec set, where there are several."""
-    sets = dict.fromkeys(x.set_name for x in counted)
-    for x in counted:
+def _figures(figures: Sequence[Figure]) -> Iterator[str]:
+    """Yield a line for each figure, with the spec set where there are several."""
+    sets = dict.fromkeys(x.set_name for x in figures)
+    for x in figures:
         where = f"set {x.set_name}, " if len(sets) > 1 and not x.sector else ""
         what = f"  {x.sector.replace('_', ' and ')}" if x.sector else f"{where}{x.kind}"
         yield f"{what}: {x.tested} of {x.total} are tested"
 
 
-def _gaps(found: Targets) -> Iterator[str]:
-    """What is known of gaps beyond figures."""
-    gaps = found.gaps
+def _gaps(targets: Targets) -> Iterator[str]:
+    """Yield lines on classes of gaps."""
+    gaps = targets.gaps
     if gaps.empty:
         yield f"classes of gaps that are proved empty: {len(gaps.empty)}"
-    if not gaps.asked and any(x.tested or x.possible for x in gaps.targets):
+    if not gaps.required and any(x.tested or x.possible for x in gaps.targets):
         shown = sum(bool(x.tested) for x in gaps.targets)
         yield f"classes of gaps: {shown} of {gaps.total} are shown (--gaps: which others there are)"
 
 
-def range_lines(spans: Sequence[Span], horizon: Fraction) -> Iterator[str]:
-    """What part of the ranges nobody tests, a line a number, and within which limits that is."""
-    if spans:
+def range_lines(ranges: Sequence[InitialValueRange], horizon: Fraction) -> Iterator[str]:
+    """Yield a line for each initial value with the untested share of its range, after the limits."""
+    if ranges:
         yield (
             f"how tests begin, of how drives can that were found ({horizon} s of driving, cars, at most 80 m "
             "apart at the start):"
         )
-    for name in dict.fromkeys(x.target for x in spans):
+    for name in dict.fromkeys(x.target for x in ranges):
         yield f"  {name}"
-        for x in (y for y in spans if y.target == name):
+        for x in (y for y in ranges if y.target == name):
             tested, can = (f"{low:.4g} to {high:.4g}" for low, high in (x.tested, x.reached))
             yield f"    {x.term}: {tested} of {can} {x.unit}; {x.share:.0%} is not tested"
 
 
 def tables(result: CatalogueView) -> dict[str, bytes]:
-    """The tables beside an index, by file name."""
+    """Return the tables of a folder of answers by file name."""
     tests = tuple(x.id for x in result.catalogue.entries)
-    found, in_force = result.tested, result.in_force
+    targets, in_force = result.tested, result.in_force
     made = {
-        "matrix.csv": as_csv(tests, found, in_force),
+        "matrix.csv": as_csv(tests, targets, in_force),
         "figures.csv": figures_csv(result.figures),
         "drivers.csv": drivers_csv(result.decisions),
-        **dict(build_results(tests, found, in_force)),
+        **dict(build_results(tests, targets, in_force)),
     }
     return {name: utf8(text) for name, text in made.items()}
 
 
-def figures_csv(counted: Sequence[Figure]) -> str:
-    """The figures as a table."""
+def figures_csv(figures: Sequence[Figure]) -> str:
+    """Return the figures as a table."""
     columns: tuple[Column[Figure], ...] = (
         Column("set", lambda x: x.set_name),
         Column("kind", lambda x: x.kind),
@@ -158,25 +160,29 @@ def figures_csv(counted: Sequence[Figure]) -> str:
         Column("tested", lambda x: x.tested),
         Column("total", lambda x: x.total),
     )
-    return csv_of(Sheet(columns, counted))
+    return csv_of(Sheet(columns, figures))
 
 
 def sheet_of(
-    targets: Sequence[Target], verdicts: Mapping[str, Verdict], possible: bool = True
-) -> Sheet[Target]:
-    """An entry for each scenario, class and class of gaps; those without a verdict are covered.
+    targets: Sequence[TargetData], verdicts: Mapping[str, Verdict], possible: bool = True
+) -> Sheet[TargetData]:
+    """Return a sheet with an entry for each target; those without a verdict are covered.
 
-    ``possible``: whether pages show which tests show it on some drives only.
+    ``possible``: whether pages have a column of tests that show a target on some drives only.
     """
 
-    def verdict(x: Target) -> Verdict:
+    def verdict(x: TargetData) -> Verdict:
         return verdicts.get(x.name, Verdict.COVERED)
 
-    def mark(x: Target) -> Mark:
+    def mark(x: TargetData) -> ColouredText:
         if verdict(x) is not Verdict.COVERED:
-            return Mark("✗ not tested", "against")
+            return ColouredText("✗ not tested", "against")
         count = len(x.tested)
-        return Mark(f"✓ {count} test{'s' * (count != 1)}", "proof") if count else Mark("– none", "none")
+        return (
+            ColouredText(f"✓ {count} test{'s' * (count != 1)}", "proof")
+            if count
+            else ColouredText("– none", "none")
+        )
 
     return Sheet(
         (
@@ -198,69 +204,71 @@ def sheet_of(
     )
 
 
-def headings(found: Targets) -> dict[str, Sequence[Remark]]:
-    """The remarks under what is wrong."""
+def headings(targets: Targets) -> dict[str, Sequence[Remark]]:
+    """Return the remarks by heading."""
     return {
-        "readers contradict each other": found.contradictions,
-        "not what they claim": found.faults,
-        "in doubt": found.doubts,
-        "say the same": found.alike,
+        "readers contradict each other": targets.contradictions,
+        "not what they claim": targets.faults,
+        "in doubt": targets.doubts,
+        "say the same": targets.alike,
     }
 
 
-def _listed(heading: str, lines: Sequence[str]) -> Iterator[str]:
+def _section(heading: str, lines: Sequence[str]) -> Iterator[str]:
     if lines:
         yield f"{heading}:"
-        yield from (indent(line, "  ") for line in lines[:MOST_TOLD])
-        if len(lines) > MOST_TOLD:
-            yield f"  … {len(lines) - MOST_TOLD} more"
+        yield from (indent(line, "  ") for line in lines[:MOST_LINES])
+        if len(lines) > MOST_LINES:
+            yield f"  … {len(lines) - MOST_LINES} more"
 
 
-def _summary(found: Targets) -> str:
+def _summary(targets: Targets) -> str:
     wrong = [
         f"{len(those)} {word}"
         for those, word in (
-            (found.missing, "not tested"),
-            (found.faults, "not what they claim"),
-            (found.doubts, "in doubt"),
-            (found.contradictions, "contradicting"),
+            (targets.missing, "not tested"),
+            (targets.faults, "not what they claim"),
+            (targets.doubts, "in doubt"),
+            (targets.contradictions, "contradicting"),
         )
         if those
     ]
     return ", ".join(wrong) or "complete"
 
 
-def as_csv(tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()) -> str:
-    """A row a test, a column a scenario, class or gap: ``x`` shown or implied, ``o`` by some drives of it.
+def as_csv(tests: Sequence[str], targets: Targets, in_force: Sequence[str] = ()) -> str:
+    """Return a row for each test and a column for each target: ``x`` shown or implied, ``o`` by some drives.
 
-    ``in_force``: what was asked otherwise than by default, which the first cell says.
+    ``in_force``: the settings that differ from the defaults, for the first cell.
     """
-    header = ["; ".join(["test", *in_force]), *(x.name for x in found.all_targets)]
-    return csv_text(header, ([test, *(_mark(test, x) for x in found.all_targets)] for test in tests))
+    header = ["; ".join(["test", *in_force]), *(x.name for x in targets.all_targets)]
+    return csv_text(header, ([test, *(_mark(test, x) for x in targets.all_targets)] for test in tests))
 
 
-def _mark(test: str, target: Target) -> str:
+def _mark(test: str, target: TargetData) -> str:
     return "x" if test in target.tested else "o" if test in target.possible else ""
 
 
 def build_results(
-    tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()
+    tests: Sequence[str], targets: Targets, in_force: Sequence[str] = ()
 ) -> Iterator[tuple[str, str]]:
     """Yield ``junit.xml`` where JUnit XML is installed: a suite of the tests, and one of all targets.
 
-    ``in_force``: what was asked otherwise than by default, a property of each suite.
+    ``in_force``: the settings that differ from the defaults, a property of each suite.
     """
     if "junit" in formats():
-        cases = tuple(catalogue_cases(tests, found))
+        cases = tuple(catalogue_cases(tests, targets))
         yield "junit.xml", written("junit", "catalogue", cases, ExitCode.AS_EXPECTED, in_force)
 
 
-def draw_matrix(tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()) -> Any:
-    """Tests over scenarios and gaps; how many tests each class has, and each class of gaps, if asked."""
-    scenarios, classes = kinds(found).values()
-    gaps = [x for x in found.gaps.targets if x.tested or x.possible]
+def draw_matrix(tests: Sequence[str], targets: Targets, in_force: Sequence[str] = ()) -> Any:
+    """Draw tests over scenarios and gaps, and below it the number of tests of each class."""
+    scenarios, classes = kinds(targets).values()
+    gaps = [x for x in targets.gaps.targets if x.tested or x.possible]
     bars = {"tests of each class (red: none)": classes}
-    bars |= {"tests of each class of gaps (red: none)": [*found.gaps.targets] if found.gaps.asked else []}
+    bars |= {
+        "tests of each class of gaps (red: none)": [*targets.gaps.targets] if targets.gaps.required else []
+    }
     bars = {title: those for title, those in bars.items() if those}
     columns = [*scenarios, *gaps]
     names = [f"{number_in(x.name)} {x.words}" for x in scenarios]
@@ -283,7 +291,7 @@ def draw_matrix(tests: Sequence[str], found: Targets, in_force: Sequence[str] = 
     for label, target in zip(above.get_xticklabels(), columns, strict=True):
         label.set_color("black" if target.tested else _NONE)
     above.set_yticks(range(len(tests)), tests, fontsize=6)
-    wrong = {test for x in (*found.faults, *found.contradictions) for test in x.tests}
+    wrong = {test for x in (*targets.faults, *targets.contradictions) for test in x.tests}
     for label, test in zip(above.get_yticklabels(), tests, strict=True):
         label.set_color(_NONE if test in wrong else "black")
     above.grid(color="#eeeeee", lw=0.6)
@@ -297,8 +305,8 @@ def draw_matrix(tests: Sequence[str], found: Targets, in_force: Sequence[str] = 
     return figure
 
 
-def _draw_bars(axes: Any, title: str, targets: Sequence[Target]) -> None:
-    """How many tests each target has."""
+def _draw_bars(axes: Any, title: str, targets: Sequence[TargetData]) -> None:
+    """Draw the number of tests of each target."""
     counts = [len(x.tested) for x in targets]
     axes.bar(range(len(targets)), counts, color=_SURE, width=0.8)
     missing = [k for k, count in enumerate(counts) if not count]

@@ -1,11 +1,11 @@
-"""All tests of a catalogue as small pictures: who is how far ahead, and who is where across the road."""
+"""Small pictures of all tests of a catalogue: each vehicle along and across the road over time."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from roadproof.extensions.catalogue.traces import Courses
+from roadproof.extensions.catalogue.curves import DriveCurves
 from roadproof.frontends.report.drive import COLOURS
-from roadproof.frontends.report.figures import make_page, shorten
+from roadproof.frontends.report.figures import make_page
 from roadproof.runtime.records import dataclass
 
 MOST_ON_A_PAGE = 40
@@ -17,15 +17,15 @@ _MARGIN = (0.35, 0.55)  # left of all cells, above them
 
 @dataclass(frozen=True)
 class DrivePicture:
-    """A test to be drawn: its ``title``, the ``group`` it stands in, in words, and how its vehicles move."""
+    """A test to be drawn: its ``title``, the title of its ``group``, and its curves."""
 
     title: str
     group: str
-    courses: Courses
+    curves: DriveCurves
 
 
 def draw_tests(tests: Sequence[DrivePicture]) -> Iterator[Any]:
-    """Pages of small pictures, groups in the order in which they come."""
+    """Yield pages of small pictures, groups in the order of their first test."""
     for k in range(0, len(tests), MOST_ON_A_PAGE):
         yield _page(tests[k : k + MOST_ON_A_PAGE])
 
@@ -39,7 +39,7 @@ def _page(tests: Sequence[DrivePicture]) -> Any:
     height = rows * _CELL[1] + len(groups) * _HEADING + _MARGIN[1]
     width = columns * _CELL[0] + _MARGIN[0]
     figure = make_page(width, height)
-    names = dict.fromkeys(name for test in tests for name in test.courses.vehicles)
+    names = dict.fromkeys(name for test in tests for name in test.curves.vehicles)
     colours = {name: COLOURS[k % len(COLOURS)] for k, name in enumerate(names)}
     _legend(figure, colours, height)
     top = height - _MARGIN[1]
@@ -54,9 +54,9 @@ def _page(tests: Sequence[DrivePicture]) -> Any:
 
 
 def _legend(figure: Any, colours: Mapping[str, str], height: float) -> None:
-    """What is drawn, and the colour of each vehicle."""
-    told = "above: m ahead of the first vehicle, below: m across the road, both over seconds"
-    figure.text(0.01, 1 - 0.22 / height, f"Tests by scenario; {told}", fontsize=8, va="center")
+    """Draw the legend, with the colour of each vehicle."""
+    text = "above: m ahead of the first vehicle, below: m across the road, both over seconds"
+    figure.text(0.01, 1 - 0.22 / height, f"Tests by scenario; {text}", fontsize=8, va="center")
     for k, (name, colour) in enumerate(colours.items()):
         place = 0.01 + 0.09 * k
         figure.text(place, 1 - 0.42 / height, f"■ {name}", fontsize=8, va="center", color=colour)
@@ -77,17 +77,27 @@ def _draw(
 
     above, below = place(upper - 0.2 - height), place(upper - 0.26 - 2 * height)
     shorten(above.set_title(test.title, fontsize=6.5, pad=2, loc="left"), _CELL[0] - 0.1)
-    courses = test.courses
-    first = next(iter(courses.vehicles.values()))
-    for name, course in courses.vehicles.items():
-        ahead = [x - y for x, y in zip(course.along, first.along, strict=True)]
-        above.plot(courses.times, ahead, color=colours[name], lw=1)
-        below.fill_between(courses.times, course.right, course.left, color=colours[name], alpha=0.45, lw=0)
-    for marking in courses.markings:
+    curves = test.curves
+    first = next(iter(curves.vehicles.values()))
+    for name, curve in curves.vehicles.items():
+        ahead = [x - y for x, y in zip(curve.along, first.along, strict=True)]
+        above.plot(curves.times, ahead, color=colours[name], lw=1)
+        below.fill_between(curves.times, curve.right, curve.left, color=colours[name], alpha=0.45, lw=0)
+    for marking in curves.markings:
         below.axhline(marking, color="#888888", lw=0.5)
     for axes in (above, below):
         axes.tick_params(labelsize=5, length=2, pad=1)
-        axes.set_xlim(courses.times[0], courses.times[-1])
+        axes.set_xlim(curves.times[0], curves.times[-1])
         axes.grid(color="#eeeeee", lw=0.4)
         axes.set_axisbelow(True)
     above.tick_params(labelbottom=False)
+
+
+def shorten(text: Any, width: float) -> None:
+    """Leave out the middle of a drawn text until it is no wider than that (inches)."""
+    whole, limit = text.get_text(), width * text.figure.dpi
+    share = limit / max(limit, text.get_window_extent().width)
+    for length in range(int(len(whole) * share), 1, -1):
+        if text.get_window_extent().width <= limit:
+            return
+        text.set_text(f"{whole[: length - length // 2]}…{whole[len(whole) - length // 2 :]}")

@@ -1,9 +1,9 @@
-"""What the schemas of the JSON files of this extension are called."""
+"""Titles of the schemas of this extension's JSON files."""
 
 from collections.abc import Mapping
 
-from roadproof.extensions.catalogue import kept
+from roadproof.extensions.catalogue.catalogue_data import CatalogueData
 
 TITLES: Mapping[type, str] = {
-    kept.Index: "roadproof catalogue --json: what tests show and mean, and what nobody tests",
+    CatalogueData: "roadproof catalogue --json: what tests show and mean, and what nobody tests",
 }

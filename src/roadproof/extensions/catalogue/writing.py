@@ -1,39 +1,39 @@
 """Drives that complete a catalogue, written as tests into a folder: copies for other tools, and entries."""
 
+import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.evidence.certificate import to_json
-from roadproof.extensions.catalogue.asked import Questions
-from roadproof.extensions.catalogue.completing import Completion, catalogue_text
-from roadproof.extensions.catalogue.entries import Concrete, Freedom
-from roadproof.extensions.catalogue.listing import FILE_NAME
-from roadproof.extensions.catalogue.showing import show
+from roadproof.evidence.certificate_file import to_json
+from roadproof.extensions.catalogue.catalogue_file import FILE_NAME
+from roadproof.extensions.catalogue.completing import Completion
+from roadproof.extensions.catalogue.entries import ConcreteTest, Freedom
+from roadproof.extensions.catalogue.judge_test import judge_test
+from roadproof.extensions.catalogue.target_formulas import TargetFormulas
 from roadproof.extensions.exchange.exporting import ExportedDrive, can_export, export
 from roadproof.extensions.exchange.exporting import names as format_names
 from roadproof.frontends.settings.readers import formats_in
-from roadproof.runtime.files import hold_folder, json_bytes, write_whole
+from roadproof.runtime.files import json_bytes, lock_folder, write_atomic
 from roadproof.runtime.records import dataclass
 from roadproof.world.models import read_toml
 
 PROOFS = "proofs"
 _TESTS = {"openscenario": ".xosc", "commonroad": ".xml", "csv": ".csv", "highd": "_tracks.csv"}
-"""The file of a format that is a test by itself, by its ending; a road alone is none."""
+"""The ending of the file that is a test, by format; a road alone is none."""
 
 
 @dataclass(frozen=True)
 class CompletionAnswer:
-    """The drives that were written into ``folder``, and what was proved empty or not found.
+    """The drives that were written into ``folder``, and the targets that are empty or have no drive.
 
-    ``copies``: of drives in formats of other tools, each an entry of the catalogue; ``told``: what is to be
-    said of them.
+    ``copies``: the entries of drives in formats of other tools; ``notes``: remarks on them.
     """
 
     folder: Path
     completions: tuple[Completion, ...]
-    copies: tuple[Concrete, ...] = ()
-    told: tuple[str, ...] = ()
+    copies: tuple[ConcreteTest, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         made = [x for x in self.completions if x.drive is not None]
@@ -52,61 +52,63 @@ class CompletionAnswer:
         ]
         lines += [f"{x.target}: nothing shows it: that is proved" for x in self.completions if x.empty]
         lines += [f"{x.name}: {x.reason}" for x in self.completions if not (x.drive or x.empty)]
-        return "\n".join([*lines, *self.told]) or "nothing was missing"
+        return "\n".join([*lines, *self.notes]) or "nothing was missing"
 
 
 def write_completions(
     folder: Path,
     completions: Sequence[Completion],
     titles: Mapping[str, str],
-    asked: Questions,
+    formulas: TargetFormulas,
     formats: Iterable[str] = (),
     specs: Iterable[str | Path] = (),
 ) -> CompletionAnswer:
-    """Write drives and proofs, copies in ``formats``, and a ``catalogue.toml``; entries that it has are kept.
+    """Write drives and proofs, copies in ``formats``, and a ``catalogue.toml``, whose entries stay.
 
-    ``titles``: what each drive is, by its name. Raises ``InputError``, ``UsageError``.
+    ``titles``: the title of each drive by its name. Raises ``InputError``, ``UsageError``.
     """
     names = formats_in(formats, format_names()) if formats else []
     made = {x.name: x for x in completions if x.drive is not None}
-    with hold_folder(folder):
+    with lock_folder(folder):
         files = {name: _write(folder, name, x) for name, x in made.items()}
         for x in completions:
             if x.empty is not None:
-                write_whole(folder / PROOFS / f"{x.name}.json", to_json(x.empty).encode())
+                write_atomic(folder / PROOFS / f"{x.name}.json", to_json(x.empty).encode())
         entries = [
-            Concrete(path.stem, path.name, titles[name], (made[name].target,)) for name, path in files.items()
+            ConcreteTest(path.stem, path.name, titles[name], (made[name].target,))
+            for name, path in files.items()
         ]
-        copies, told = list[Concrete](), list[str]()
+        copies, notes = list[ConcreteTest](), list[str]()
         for name in names:
-            for copy in _exported(folder, name, list(files.values()), specs, told):
-                copies += _listed(folder, copy, entries, asked, told)
+            for copy in _export(folder, name, list(files.values()), specs, notes):
+                copies += _entries_of_copy(folder, copy, entries, formulas, notes)
         if entries:
-            write_whole(folder / FILE_NAME, _with_known(folder / FILE_NAME, [*entries, *copies]).encode())
-    return CompletionAnswer(folder, tuple(completions), tuple(copies), tuple(told))
+            content = _with_earlier(folder / FILE_NAME, [*entries, *copies])
+            write_atomic(folder / FILE_NAME, content.encode())
+    return CompletionAnswer(folder, tuple(completions), tuple(copies), tuple(notes))
 
 
 def _write(folder: Path, name: str, made: Completion) -> Path:
-    """Write a drive, under another name where there is a file of that name that says otherwise."""
+    """Write a drive, under another name where a file of that name has other content, and return its path."""
     assert made.drive is not None
     content, count, path = json_bytes(made.drive.as_data()), 1, folder / f"{name}.json"
     while path.exists() and path.read_bytes() != content:
         count += 1
         path = folder / f"{name}-{count}.json"
-    write_whole(path, content)
+    write_atomic(path, content)
     return path
 
 
-def _exported(
-    folder: Path, name: str, files: Sequence[Path], specs: Iterable[str | Path], told: list[str]
+def _export(
+    folder: Path, name: str, files: Sequence[Path], specs: Iterable[str | Path], notes: list[str]
 ) -> Iterator[ExportedDrive]:
-    """The drives in one format; what it cannot say is told."""
+    """Yield the drives in one format; add a note on each that it cannot represent."""
     fit = []
     for path in files:
         try:
             can_export(path, name, specs)
         except InputError as error:
-            told.append(f"{path.stem} is not written as {name}: {error}")
+            notes.append(f"{path.stem} is not written as {name}: {error}")
         else:
             fit.append(path)
     if fit:
@@ -114,7 +116,7 @@ def _exported(
 
 
 def _free(folder: Path, name: str) -> Path:
-    """A folder for copies in a format. Recordings are numbered in each run, so they need a new one."""
+    """Return a folder for copies in a format. Recordings are numbered in each run, so they need a new one."""
     place, count = folder / name, 1
     while name == "highd" and place.exists():
         count += 1
@@ -122,10 +124,17 @@ def _free(folder: Path, name: str) -> Path:
     return place
 
 
-def _listed(
-    folder: Path, copy: ExportedDrive, entries: Sequence[Concrete], asked: Questions, told: list[str]
-) -> Iterator[Concrete]:
-    """The entry of a copy, which claims what its original does; it is looked at again as it was written."""
+def _entries_of_copy(
+    folder: Path,
+    copy: ExportedDrive,
+    entries: Sequence[ConcreteTest],
+    formulas: TargetFormulas,
+    notes: list[str],
+) -> Iterator[ConcreteTest]:
+    """Yield the entry of a copy that is a test, with those claims of its original that the file shows.
+
+    Adds a note where it shows none of them.
+    """
     original = next(x for x in entries if x.id == copy.name)
     path = next((x for x in copy.files if x.name.endswith(_TESTS.get(copy.format, "\0"))), None)
     if path is None:
@@ -133,19 +142,38 @@ def _listed(
     place = str(path.relative_to(folder))
     if copy.format == "highd":
         place += ":" + ",".join(map(str, copy.ids.values()))
-    shown = show(Concrete(original.id, str(folder / place)), asked, Freedom())
+    shown = judge_test(ConcreteTest(original.id, str(folder / place)), formulas, Freedom())
     claims = tuple(x for x in original.claims if x in shown.names)
     if not claims:
         what = shown.fault or f"it shows {', '.join(sorted(shown.names)) or 'no scenario'}"
-        told.append(f"{original.id} as {copy.format} is no test of {original.claims[0]}: {what}")
-    yield Concrete(f"{original.id} as {copy.format}", place, original.title, claims, original.id)
+        notes.append(f"{original.id} as {copy.format} is no test of {original.claims[0]}: {what}")
+    yield ConcreteTest(f"{original.id} as {copy.format}", place, original.title, claims, original.id)
 
 
-def _with_known(path: Path, entries: Sequence[Concrete]) -> str:
-    """The text of a ``catalogue.toml``, with what it says already."""
+def _with_earlier(path: Path, entries: Sequence[ConcreteTest]) -> str:
+    """Return the text of a ``catalogue.toml`` with its present text first."""
     if not path.exists():
         return catalogue_text(entries)
     tests = read_toml(path).get("test")
     known = {x.get("id") for x in tests if isinstance(x, Mapping)} if isinstance(tests, list) else set()
     new = [x for x in entries if x.id not in known]
     return "\n".join([path.read_text("utf-8").rstrip("\n") + "\n", *([catalogue_text(new)] if new else [])])
+
+
+def catalogue_text(tests: Iterable[ConcreteTest]) -> str:
+    """Return tests as TOML; basic strings and arrays of strings are written as in JSON."""
+    return "\n".join(
+        "[[test]]\n"
+        + "".join(f"{x} = {json.dumps(y, ensure_ascii=False)}\n" for x, y in _fields(test).items())
+        for test in tests
+    )
+
+
+def _fields(test: ConcreteTest) -> dict[str, object]:
+    fields: dict[str, object] = {
+        "id": test.id,
+        "title": test.title,
+        "file": test.place,
+        "claims": test.claims,
+    }
+    return fields | ({"copy_of": test.copy_of} if test.copy_of else {})

@@ -1,9 +1,9 @@
-"""How hard a driver brakes as a function of time: ramps, and what AEB makes of them; exactly.
+"""The braking of a driver over time: ramps, and how AEB changes them; exact.
 
 It is worked out from times, apart from the formulas of ``driver.spec``.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from math import isqrt
@@ -20,7 +20,7 @@ Joined: TypeAlias = Literal["none", "replace", "max", "add"]
 
 @dataclass(frozen=True)
 class Ramp:
-    """From ``onset`` (s) on braking grows in ``duration`` (s, > 0) to ``full`` (m/s²), and stays."""
+    """A braking that grows from ``onset`` (s) on in ``duration`` (s, > 0) to ``full`` (m/s²), and stays."""
 
     onset: Fraction
     duration: Fraction
@@ -28,11 +28,11 @@ class Ramp:
 
     @property
     def end(self) -> Fraction:
-        """When it is full."""
+        """The instant of full braking (s)."""
         return self.onset + self.duration
 
     def at(self, time: Fraction) -> Fraction:
-        """The braking at a time."""
+        """Return the braking (m/s²) at a time (s)."""
         return self.full * max(_NONE, min(Fraction(1), (time - self.onset) / self.duration))
 
 
@@ -48,54 +48,39 @@ class AssistedBraking:
     joined: Joined = "none"
 
     def at(self, time: Fraction) -> Fraction:
-        """The braking at a time, and from it on."""
+        """Return the braking (m/s²) at a time (s), right of a jump."""
         driver, aeb = self.driver, self.aeb
         if aeb is None:
             return driver.at(time)
         if self.joined == "replace":
-            begun = Ramp(min(driver.onset, aeb.onset), aeb.duration, aeb.full)
-            return begun.at(time) if time >= aeb.onset else driver.at(time)
+            takes_over = Ramp(min(driver.onset, aeb.onset), aeb.duration, aeb.full)
+            return takes_over.at(time) if time >= aeb.onset else driver.at(time)
         if self.joined == "max":
             return max(driver.at(time), aeb.at(time))
         return min(driver.at(time) + aeb.at(time), aeb.full)
 
     @property
     def knots(self) -> list[Fraction]:
-        """Between neighbours of these times braking is affine, and after the last it is constant."""
+        """The times (s) between which braking is affine; after the last it is constant."""
         driver, aeb = self.driver, self.aeb
-        found = {_NONE, driver.onset, driver.end}
+        knots = {_NONE, driver.onset, driver.end}
         if aeb is not None:
             a, b = driver.full, aeb.full
-            found |= {aeb.onset, aeb.end, aeb.onset + aeb.duration * a / b}  # max, on the driver's plateau
-            found |= {
+            knots |= {aeb.onset, aeb.end, aeb.onset + aeb.duration * a / b}  # max, on the driver's plateau
+            knots |= {
                 (a * driver.onset + b * aeb.end) / (a + b),
                 aeb.onset + aeb.duration * (b - a) / b,
             }  # add
             if b > a:
-                found.add((b * aeb.onset - a * driver.onset) / (b - a))  # max, on both ramps
-        return sorted(x for x in found if x >= 0)
+                knots.add((b * aeb.onset - a * driver.onset) / (b - a))  # max, on both ramps
+        return sorted(x for x in knots if x >= 0)
 
     def pieces(self, speed: Fraction) -> list[Along]:
         """The motion from ``speed`` (m/s) at time 0 until it stands.
 
         Raises ``InputError`` where it stands while braking grows, at an irrational instant.
         """
-        made: list[Along] = []
-        for time, end in pairwise([*self.knots, None]):
-            assert time is not None
-            braking, growth = self.at(time), _NONE
-            if end is not None:
-                middle = (time + end) / 2
-                growth = (self.at(middle) - braking) / (middle - time)
-            stands = _stands(speed, braking, growth, None if end is None else end - time)
-            duration = stands if end is None or stands is not None else end - time
-            assert duration is not None, "the last braking is constant, and more than none"
-            if duration > 0:
-                made.append((duration, -braking, -growth))
-            if stands is not None:
-                break
-            speed -= braking * duration + growth * duration**2 / 2
-        return _joined(made)
+        return pieces_of(speed, self.phases)
 
     @property
     def phases(self) -> list[tuple[Fraction | None, Fraction, Fraction]]:
@@ -111,7 +96,7 @@ class AssistedBraking:
         return made
 
     def state(self, speed: Fraction, time: Fraction) -> tuple[Fraction, Fraction]:
-        """Speed and braking at a time; none of either once it stands."""
+        """Return speed (m/s) and braking (m/s²) at a time; both are 0 once it stands."""
         for duration, acceleration, jerk in self.pieces(speed):
             if time < duration:
                 return speed + acceleration * time + jerk * time**2 / 2, -acceleration - jerk * time
@@ -120,10 +105,29 @@ class AssistedBraking:
         return _NONE, _NONE
 
 
+def pieces_of(speed: Fraction, phases: Iterable[tuple[Fraction | None, Fraction, Fraction]]) -> list[Along]:
+    """Return the motion from ``speed`` (m/s) through phases until it stands.
+
+    Raises ``InputError`` where it stands while braking grows, at an irrational instant.
+    """
+    made: list[Along] = []
+    for lasts, acceleration, jerk in phases:
+        brakes = acceleration < 0 or jerk < 0
+        stands = _stands(speed, -acceleration, -jerk, lasts) if brakes else None
+        duration = lasts if stands is None else stands
+        assert duration is not None, "the last braking is constant, and more than none"
+        if duration > 0:
+            made.append((duration, acceleration, jerk))
+        if stands is not None:
+            break
+        speed += acceleration * duration + jerk * duration**2 / 2
+    return _joined(made)
+
+
 def _stands(
     speed: Fraction, braking: Fraction, growth: Fraction, duration: Fraction | None
 ) -> Fraction | None:
-    """After what time it stands, within ``duration``. Raises ``InputError``."""
+    """Return after what time it stands within ``duration``, or None. Raises ``InputError``."""
     if duration is not None and speed > braking * duration + growth * duration**2 / 2:
         return None
     if speed == 0:
@@ -141,13 +145,13 @@ def _stands(
 
 
 def _joined(pieces: Sequence[Along]) -> list[Along]:
-    """Pieces that go on as the one before them are part of it."""
+    """Merge each piece that continues the one before it."""
     made: list[Along] = []
     for duration, acceleration, jerk in pieces:
         if made:
-            before, begun, growing = made[-1]
-            if jerk == growing and acceleration == begun + growing * before:
-                made[-1] = (before + duration, begun, jerk)
+            before, start, growing = made[-1]
+            if jerk == growing and acceleration == start + growing * before:
+                made[-1] = (before + duration, start, jerk)
                 continue
         made.append((duration, acceleration, jerk))
     return made

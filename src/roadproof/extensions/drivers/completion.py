@@ -1,4 +1,4 @@
-"""What a shell completes names of driver models with."""
+"""Names of driver models for the completion of a shell."""
 
 from collections.abc import Mapping
 

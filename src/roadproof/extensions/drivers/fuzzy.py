@@ -50,7 +50,7 @@ class Scale:
         return _whole(Fraction(acceleration) * self.metre / _SECOND**2)
 
     def to_acceleration(self, units: int) -> Fraction:
-        """In m/s²."""
+        """Return an acceleration in m/s²."""
         return Fraction(units * _SECOND**2, self.metre)
 
 
@@ -87,7 +87,7 @@ def _whole(value: Fraction) -> int:
 
 
 class Controller:
-    """SV's braking from look to look. It remembers how long it has seen danger, and how it has braked.
+    """The braking of SV from look to look. It remembers how long it has seen danger, and how it has braked.
 
     As in the implementation, neither is forgotten when danger is over. ``waits``: at the last look it saw
     danger, and its reaction time was not over.
@@ -117,13 +117,13 @@ class Controller:
             return 0
         critical = self._critical(gap, speed - other)
         proactive = self._proactive(gap, speed, other)
-        wanted = proactive if critical is None else critical
-        self.waits = wanted is not None and self.waited < _WAITS
+        required = proactive if critical is None else critical
+        self.waits = required is not None and self.waited < _WAITS
         self.waited += self.waits
-        if wanted is None or self.waits:
+        if required is None or self.waits:
             self.held = 0
         else:
-            self.asked = min(self.asked + self.step, wanted)
+            self.asked = min(self.asked + self.step, required)
             # Half of the speed in a unit of time, over two of them, is a stand.
             self.held = min(self.asked, speed // TICKS)
         return self.held
@@ -138,7 +138,7 @@ class Controller:
         return max(near // product + 1, closing)
 
     def needs(self, faster: int) -> int:
-        """In how much of a gap SV loses that speed with comfortable braking, rounded up.
+        """Return the gap in which SV loses that speed with comfortable braking, rounded up.
 
         It may have to go on to the next look, to wait, to raise its braking from none look by look, and to
         brake by less in the look in which it comes to a stand.
@@ -154,7 +154,7 @@ class Controller:
         return None if near <= 0 else self._rounded(self.comfort * min(near, whole), whole)
 
     def _room(self, gap: int, speed: int, other: int) -> tuple[int, int]:
-        """How far the gap is from safe, and how far unsafe is; over a common divisor."""
+        """Return how far the gap is from safe, and how far unsafe is; over a common divisor."""
         b, full, c = self.comfort, self.greatest, self.other
         safe = 2 * b * full * c * (speed * _REACTION + 2 * self.margin - gap)
         near = safe + speed * speed * full * c - other * other * b * full
@@ -179,7 +179,7 @@ class Controller:
 
 
 def _goes_by(clear: int, faster: int, beside: int, lateral: int) -> bool:
-    """Whether SV has gone by for 0.1 s when POV would be beside it; ``clear``: how far it has to go."""
+    """Return whether SV is past for 0.1 s when POV would be beside it; ``clear``: the way it has to go."""
     if beside <= 0:
         return False
     if lateral <= 0:

@@ -1,11 +1,11 @@
-"""What the fuzzy safety model sees in a test, look by look, rounded to what it computes with."""
+"""The fuzzy safety model in a test, look by look; states are rounded to its units."""
 
 from collections.abc import Iterable
 from dataclasses import replace
 from fractions import Fraction
 
 from roadproof.extensions.drivers.fuzzy import CHANGE, COMFORT, HERTZ, Controller, scale_of, step
-from roadproof.extensions.drivers.lanes import Box
+from roadproof.extensions.drivers.lanes import VehicleBox
 from roadproof.extensions.drivers.manoeuvres import ManoeuvreName
 from roadproof.extensions.drivers.response import Phase, Scene
 from roadproof.runtime.records import dataclass
@@ -19,7 +19,7 @@ LONGEST = 60
 
 @dataclass(frozen=True)
 class Look:
-    """What SV sees at a look.
+    """The view of SV at a look.
 
     The gap along the road (m), both speeds (m/s), the distance across (m), and how fast that shrinks (m/s).
     """
@@ -32,7 +32,12 @@ class Look:
 
     @staticmethod
     def of(
-        me: Box, other: Box, speed: Fraction, its_speed: Fraction, drift: Fraction, its_drift: Fraction
+        me: VehicleBox,
+        other: VehicleBox,
+        speed: Fraction,
+        its_speed: Fraction,
+        drift: Fraction,
+        its_drift: Fraction,
     ) -> "Look":
         """Return what SV sees of the other vehicle; ``drift``: speeds across the road, to the left."""
         is_left = other.middle >= me.middle
@@ -43,14 +48,14 @@ class Look:
 
 @dataclass(frozen=True)
 class Sight:
-    """Both vehicles at a look as they move in the test: boxes, and speeds along and across, to the left.
+    """The boxes of both vehicles at a look, and their speeds along and across, as they move in the test.
 
     ``is_even``: from now on both go straight on in the test, as fast as now.
     """
 
     time: Fraction
-    me: Box
-    other: Box
+    me: VehicleBox
+    other: VehicleBox
     speed: Fraction
     its_speed: Fraction
     drift: Fraction
@@ -79,7 +84,7 @@ def controlled(looks: Iterable[Sight], known: Fraction | None) -> tuple[Fraction
 
 
 class _Controlled:
-    """SV under the controller, which moves as in the test until it first brakes. Its memory goes on."""
+    """The motion of SV under the controller: as in the test until it first brakes. Its memory goes on."""
 
     def __init__(self) -> None:
         self.onset: Fraction | None = None
@@ -91,7 +96,7 @@ class _Controlled:
         self._controller = Controller(self._scale)
 
     def is_over(self, now: Sight) -> bool:
-        """Whether SV stands or has passed, or neither brakes any more nor is faster than the other."""
+        """Return whether SV stands or has passed, or neither brakes any more nor is faster than the other."""
         if self.onset is None:
             self._place, self._speed = now.me.s, now.speed
         if self._speed <= 0 or self._place - now.me.length > now.other.s:

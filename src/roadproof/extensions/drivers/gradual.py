@@ -11,9 +11,10 @@ from functools import cmp_to_key
 from itertools import pairwise
 
 from roadproof.errors import UsageError
-from roadproof.extensions.drivers.driving import DriverSettings, motion_in_deceleration
+from roadproof.extensions.drivers.driver_settings import DriverSettings
+from roadproof.extensions.drivers.driving import motion_under
 from roadproof.extensions.drivers.manoeuvres import Deceleration, Plane, Values, is_possible, start_of
-from roadproof.extensions.drivers.models import MODELS, ModelName
+from roadproof.extensions.drivers.models import driver_model, law_of
 from roadproof.semantics.exact.algebraic import Point, Root, compare, real_roots
 from roadproof.semantics.exact.polynomial import polynomial
 from roadproof.semantics.exact.truth import NEVER, TruthSet, intersection, interval
@@ -31,28 +32,30 @@ _NONE = Fraction(0)
 _Coefficients = list[Fraction]
 
 
-def check_gradual(model: ModelName, values: Values, reading: DriverSettings) -> None:
-    """Raises ``UsageError`` for models and speeds of which nothing is worked out with a finite rate."""
-    if MODELS[model].is_stepped:
+def check_gradual(model: str, values: Values, settings: DriverSettings) -> None:
+    """Check that a model and its speed are supported with a finite rate. Raises ``UsageError``."""
+    law = driver_model(model).law
+    if law is None:
         raise UsageError(f"model={model} does not support a finite {RATE}; omit one of the two")
-    least = reading.parameters.cc_braking * reading.parameters.cc_ramp / 2
+    ramp = settings.values.get(law.ramp, _NONE)
+    least = settings.values[law.braking] * ramp / 2
     speed = values.get("Ve0", _NONE)
-    if model == "careful" and speed < least:
+    if speed < least:
         raise UsageError(
             f"Ve0={float(speed):g} m/s with {RATE}: SV would stop before it brakes fully, which is "
-            f"not supported; use Ve0 of at least cc_braking*cc_ramp/2 = {float(least):g} m/s, or omit "
+            f"not supported; use Ve0 of at least {law.braking}*{law.ramp}/2 = {float(least):g} m/s, or omit "
             f"{RATE}"
         )
 
 
-def line(plane: Plane, model: ModelName, reading: DriverSettings, row: Fraction) -> TruthSet:
-    """At which gaps on a row's line the collision is unpreventable; nowhere where POV would go backwards."""
+def line(plane: Plane, model: str, reading: DriverSettings, row: Fraction) -> TruthSet:
+    """Return the gaps on a row's line with an unpreventable collision; none where POV would reverse."""
     values = plane.values(row)
     if not is_possible(values):
         return NEVER
     start = start_of(plane.manoeuvre, values)
     assert isinstance(start, Deceleration)
-    motion = motion_in_deceleration(model, start, reading)
+    motion = motion_under(law_of(model), plane.manoeuvre.name, start, reading)
     if not motion and start.Ve0 > 0:
         return interval(*plane.along)
     most = most_gained(motion, start)
@@ -75,7 +78,7 @@ def most_gained(motion: Sequence[Along], start: Deceleration) -> Point:
     else:
         stands = _upper(-2 * other, _NONE, rate)
         way = _upper(-8 * other**3, _NONE, 9 * rate)
-    found: list[Point] = [_NONE]
+    gains: list[Point] = [_NONE]
     place, time = _NONE, _NONE
     for duration, acceleration, jerk in motion:
         end = time + duration
@@ -86,13 +89,13 @@ def most_gained(motion: Sequence[Along], start: Deceleration) -> Point:
             if low >= full:
                 gone = other * full - rate * full**3 / 6
                 ahead = _moved([gone, slow, -braking / 2, _NONE], full)
-            found += _turns([x - y for x, y in zip(mine, ahead, strict=True)], low, high, stands)
+            gains += _turns([x - y for x, y in zip(mine, ahead, strict=True)], low, high, stands)
         place += speed * duration + acceleration * duration**2 / 2 + jerk * duration**3 / 6
         speed += acceleration * duration + jerk * duration**2 / 2
         time = end
     if compare(stands, time) <= 0:
-        found.append(_less(place, way))
-    return max(found, key=cmp_to_key(compare))
+        gains.append(_less(place, way))
+    return max(gains, key=cmp_to_key(compare))
 
 
 def _moved(coefficients: _Coefficients, by: Fraction) -> _Coefficients:
@@ -102,7 +105,7 @@ def _moved(coefficients: _Coefficients, by: Fraction) -> _Coefficients:
 
 
 def _turns(gain: _Coefficients, low: Fraction, high: Fraction, stands: Point) -> list[Point]:
-    """What a cubic gain is where it turns, in [low, high] and while POV moves."""
+    """Return the values of a cubic gain at its extremes in [low, high] while POV moves."""
     _, b, c, d = gain
     slope = polynomial(b, 2 * c, 3 * d)
     return [

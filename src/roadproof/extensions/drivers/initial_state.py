@@ -9,14 +9,14 @@ from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)
-class State:
+class InitialState:
     """The vehicles at one instant: signals and sizes by name and vehicle (SI)."""
 
     signals: Mapping[tuple[t.SignalName, str], Fraction]
     sizes: Mapping[tuple[t.SizeName, str], Fraction]
 
     def gap(self, behind: str, ahead: str) -> Fraction:
-        """From the front of one vehicle to the rear of the other, along the road."""
+        """Return the distance from the front of one vehicle to the rear of the other, along the road."""
         return self.signals["s", ahead] - self.sizes["length", ahead] - self.signals["s", behind]
 
     def beside(self, one: str, other: str) -> Fraction:
@@ -26,7 +26,7 @@ class State:
         return max(left, right)
 
     def start(self, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...]) -> dict[str, float]:
-        """As the sheets of UN R157 name it, in SI units."""
+        """Return the state under the names of UN R157's sheets, in SI units."""
         return {name: round(float(x), 4) for name, x in self.values(manoeuvre, vehicles).items()}
 
     def values(self, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...]) -> dict[str, Fraction]:
@@ -38,13 +38,13 @@ class State:
         gap, nothing = self.gap(first, other), Fraction(0)
         match manoeuvre:
             case "cut-in":
-                said = {"dV0": speed - signals["v_lon", other], "Vy": abs(signals["v_lat", other])}
-                said |= {"dx0": gap, "dy0": self.beside(first, other)}
+                values = {"dV0": speed - signals["v_lon", other], "Vy": abs(signals["v_lat", other])}
+                values |= {"dx0": gap, "dy0": self.beside(first, other)}
             case "cut-out":
                 near = gap if speed else nothing
-                said = {"Vf0": signals["v_lon", last], "Vy": abs(signals["v_lat", other])}
-                said |= {"headway": near / speed if speed else nothing}
-                said |= {"dx0_f": self.gap(first, last) - near - length}
+                values = {"Vf0": signals["v_lon", last], "Vy": abs(signals["v_lat", other])}
+                values |= {"headway": near / speed if speed else nothing}
+                values |= {"dx0_f": self.gap(first, last) - near - length}
             case "deceleration":
-                said = {"dV0": speed - signals["v_lon", other], "Gx": -signals["a_lon", other], "dx0": gap}
-        return {"Ve0": speed, **said, "length": length, "width": width}
+                values = {"dV0": speed - signals["v_lon", other], "Gx": -signals["a_lon", other], "dx0": gap}
+        return {"Ve0": speed, **values, "length": length, "width": width}

@@ -1,4 +1,4 @@
-"""In which lane vehicles of a test begin, and where the markings are that models speak of."""
+"""The lanes in which vehicles of a test begin, and the markings that models depend on."""
 
 from fractions import Fraction
 
@@ -8,7 +8,7 @@ from roadproof.world.road import Road
 
 @dataclass(frozen=True)
 class Across:
-    """Where SV and the first POV are across the road when the scenario begins (m, to the left).
+    """The places of SV and the first POV across the road when the scenario begins (m, to the left).
 
     ``side`` is 1 where POV is to the left of SV, -1 where it is to the right. ``centre``: the middle of the
     lane of POV; ``marking``: the edge of SV's lane on the side of POV.
@@ -20,7 +20,7 @@ class Across:
 
 
 @dataclass(frozen=True)
-class Box:
+class VehicleBox:
     """A vehicle at one instant: its front, its left side, and its size (m)."""
 
     s: Fraction
@@ -34,7 +34,7 @@ class Box:
         return self.d - self.width / 2
 
 
-def across(road: Road, subject: Box, other: Box, comes_in: bool) -> Across:
+def across(road: Road, subject: VehicleBox, other: VehicleBox, comes_in: bool) -> Across:
     """Return where two vehicles are among the lanes of a road.
 
     Off the lanes POV is taken to begin in the middle of its lane, and the marking half-way between the boxes.
@@ -56,7 +56,7 @@ def across(road: Road, subject: Box, other: Box, comes_in: bool) -> Across:
     return Across(side, centre, marking)
 
 
-def lane_at(road: Road, box: Box) -> tuple[Fraction, Fraction] | None:
+def lane_at(road: Road, box: VehicleBox) -> tuple[Fraction, Fraction] | None:
     """Return the edges of the lane in which the middle of a box is, right and left; None off the lanes."""
     for lanelet in road.lanelets:
         (low, high), (right, left) = lanelet.s, lanelet.d

@@ -7,14 +7,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
-from roadproof.extensions.drivers import gradual, models
-from roadproof.extensions.drivers import manoeuvres as m
-from roadproof.extensions.drivers.driving import DriverSettings, speeds_of
+from roadproof.extensions.drivers import gradual, manoeuvres, models
+from roadproof.extensions.drivers.driver_model import Law
+from roadproof.extensions.drivers.driver_settings import DriverSettings
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.specification import Specification
 from roadproof.runtime.records import dataclass
-from roadproof.semantics.exact.algebraic import Point, Root, approximate
+from roadproof.semantics.exact.algebraic import Point, Root, as_float
 from roadproof.semantics.exact.truth import TruthSet
 from roadproof.world.road import Road
 
@@ -23,24 +23,32 @@ SIDES: tuple[Side, ...] = ("unpreventable", "preventable")
 
 
 def claim_of(
-    manoeuvre: m.Manoeuvre, model: models.ModelName, values: m.Values, side: Side, reading: DriverSettings
+    manoeuvre: manoeuvres.Manoeuvre,
+    model: str,
+    values: manoeuvres.Values,
+    side: Side,
+    reading: DriverSettings,
 ) -> str:
-    """What the drive from these values shows: its side, the model followed, and what comes of it.
+    """Return the claim about the drive from these values: its side, the model, and the outcome.
 
     Of a controller that is stepped: only how the drive begins, and what comes of it. Where POV's braking
     grows at a finite rate: that SV follows its model, and what comes of it.
     """
-    start = m.start_of(manoeuvre, values)
-    numbers = _numbers(start, reading, reading.has_aeb(model))
+    start = manoeuvres.start_of(manoeuvre, values)
+    numbers = _numbers(start, models.driver_model(model).law, reading)
     return _shown(manoeuvre, model, side, _is_gradual(start), numbers)
 
 
 def open_claim(
-    specification: Specification, manoeuvre: m.Manoeuvre, model: models.ModelName, fixed: m.Values, side: Side
+    specification: Specification,
+    manoeuvre: manoeuvres.Manoeuvre,
+    model: str,
+    fixed: manoeuvres.Values,
+    side: Side,
 ) -> str:
     """Return what a drive of a side shows for some initial values: ``claim_of`` with names for numbers."""
     is_gradual = gradual.RATE in fixed
-    if models.MODELS[model].is_stepped:
+    if models.driver_model(model).is_stepped:
         return _shown(manoeuvre, model, side, is_gradual, ())
     course = models.GRADUAL if is_gradual else manoeuvre.name
     declared = specification.definitions[models.follows_name(course, model)].parameters
@@ -50,20 +58,20 @@ def open_claim(
     return f"given {given}: {_shown(manoeuvre, model, side, is_gradual, names)}"
 
 
-def boundary_text(manoeuvre: m.Manoeuvre, model: models.ModelName, fixed: m.Values) -> str:
+def boundary_text(manoeuvre: manoeuvres.Manoeuvre, model: str, fixed: manoeuvres.Values) -> str:
     """Return what is true where a collision is unpreventable: of the state there, or of the drive."""
     if gradual.RATE in fixed:
         return models.touched(manoeuvre.vehicles)
     return models.boundary_of(manoeuvre.name, model, manoeuvre.vehicles)
 
 
-def _is_gradual(start: m.Start) -> bool:
-    return isinstance(start, m.Deceleration) and start.dGdt is not None
+def _is_gradual(start: manoeuvres.Start) -> bool:
+    return isinstance(start, manoeuvres.Deceleration) and start.dGdt is not None
 
 
 def _shown(
-    manoeuvre: m.Manoeuvre,
-    model: models.ModelName,
+    manoeuvre: manoeuvres.Manoeuvre,
+    model: str,
     side: Side,
     is_gradual: bool,
     numbers: tuple[str, ...],
@@ -74,7 +82,7 @@ def _shown(
         driven = models.follows(models.GRADUAL, model, vehicles, numbers)
         return f"{models.foreseen(models.GRADUAL, vehicles)} and {driven} and {met}"
     begins = models.foreseen(manoeuvre.name, vehicles)
-    if models.MODELS[model].is_stepped:
+    if models.driver_model(model).is_stepped:
         return f"{begins} and {met}"
     boundary = models.unpreventable(manoeuvre.name, model, vehicles)
     driven = models.follows(manoeuvre.name, model, vehicles, numbers)
@@ -83,16 +91,16 @@ def _shown(
     return f"{begins} and not {boundary} and {driven} and {met}"
 
 
-def _numbers(start: m.Start, reading: DriverSettings, has_aeb: bool) -> tuple[str, ...]:
+def _numbers(start: manoeuvres.Start, law: Law | None, reading: DriverSettings) -> tuple[str, ...]:
     speed = _number(start.Ve0, "m/s")
     match start:
-        case m.CutIn():
-            aided = speeds_of(start, reading) if has_aeb else ()
+        case manoeuvres.CutIn():
+            aided = () if law is None else law.speeds(start, reading)
             place = _number(start.middle + start.lane, "m")
             return (place, _number(start.dy0, "m"), speed, *(_number(x, "m/s") for x in aided))
-        case m.CutOut():
+        case manoeuvres.CutOut():
             return (_number(start.middle, "m"), speed)
-        case m.Deceleration():
+        case manoeuvres.Deceleration():
             braking = _number(start.Gx, "m/s^2")
             if start.dGdt is None:
                 return (speed, braking)
@@ -114,7 +122,7 @@ _NO_ROAD = Road("none", (), frozenset())
 
 
 @dataclass(frozen=True)
-class End:
+class SpanEnd:
     """An end of a span: a number near it, and what it is exactly: a fraction, or a root of a polynomial."""
 
     near: float
@@ -122,20 +130,20 @@ class End:
 
 
 @dataclass(frozen=True)
-class Line:
-    """At a value of the other side (SI), where along the line a collision is unpreventable.
+class PlateLine:
+    """A line of a plate: the value of the other side (SI), and the spans where a collision is unpreventable.
 
     Of a controller that is stepped, spans are from the first to the last of neighbouring places looked at.
     """
 
     at: Fraction
-    spans: tuple[tuple[End, End], ...]
+    spans: tuple[tuple[SpanEnd, SpanEnd], ...]
 
 
 def truths(
-    specification: Specification, plane: m.Plane, model: models.ModelName, values: Mapping[str, Fraction]
+    specification: Specification, plane: manoeuvres.Plane, model: str, values: Mapping[str, Fraction]
 ) -> Iterator[TruthSet]:
-    """Where a model that is not stepped cannot prevent a collision on each line of a plane, in order.
+    """Return where a model that is not stepped cannot prevent a collision on each line of a plane, in order.
 
     By the formula of its boundary, or from the motion where POV's braking grows at a finite rate; ``values``
     are those of all parameters (SI).
@@ -145,32 +153,34 @@ def truths(
         return (gradual.line(plane, model, reading, row) for row in plane.rows)
     name, vehicles = models.boundary_name(plane.manoeuvre.name, model), plane.manoeuvre.vehicles
     formula = bind(apply_definition(specification, name, vehicles).formula, _NO_ROAD, {}, values)
-    return (m.line(plane, formula, row) for row in plane.rows)
+    return (manoeuvres.line(plane, formula, row) for row in plane.rows)
 
 
-def told_line(row: Fraction, true: TruthSet) -> Line:
-    """What is true on a row's line, told."""
+def line_of_truth(row: Fraction, true: TruthSet) -> PlateLine:
+    """Return a row's line with the spans on which the formula is true."""
     spans = tuple((end_of(x.begin.point), end_of(x.end.point)) for x in true.spans() if x.end is not None)
-    return Line(row, spans)
+    return PlateLine(row, spans)
 
 
-def sides_in(lines: Sequence[Line], along: tuple[Fraction, Fraction], is_stepped: bool) -> frozenset[Side]:
+def sides_in(
+    lines: Sequence[PlateLine], along: tuple[Fraction, Fraction], is_stepped: bool
+) -> frozenset[Side]:
     """The sides of the boundary that a plate has more than single places of.
 
     ``along``: the range of every line. Of a controller that is stepped a single place is a side, too.
     """
     whole = tuple(end_of(x) for x in along)
-    found: set[Side] = set()
+    sides: set[Side] = set()
     for one in lines:
         if any(is_stepped or a != b for a, b in one.spans):
-            found.add("unpreventable")
+            sides.add("unpreventable")
         if one.spans != (whole,):
-            found.add("preventable")
-    return frozenset(found)
+            sides.add("preventable")
+    return frozenset(sides)
 
 
-def end_of(point: Point) -> End:
+def end_of(point: Point) -> SpanEnd:
     """A point of a line, told."""
     if isinstance(point, Root):
-        return End(round(approximate(point), _PLACES), f"root of {list(point.polynomial)}, constant first")
-    return End(round(float(point), _PLACES), str(point))
+        return SpanEnd(round(as_float(point), _PLACES), f"root of {list(point.polynomial)}, constant first")
+    return SpanEnd(round(float(point), _PLACES), str(point))

@@ -13,13 +13,13 @@ from types import MappingProxyType
 from typing import Any, Literal, TypeAlias
 
 from roadproof.errors import UsageError
+from roadproof.extensions.drivers.judging import truth_within
 from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
-from roadproof.library.specification import unknown
+from roadproof.library.specification import unknown_name
 from roadproof.logic.formula import Formula
-from roadproof.logic.terms import Own, Signal, SignalName, Size, SizeName
+from roadproof.logic.terms import CustomSignal, Signal, SignalName, Size, SizeName
 from roadproof.runtime.records import dataclass
-from roadproof.semantics.exact.exact import truth_within
-from roadproof.semantics.exact.polynomial import Polynomial, polynomial
+from roadproof.semantics.exact.polynomial import TimePolynomial, polynomial
 from roadproof.semantics.exact.signals import LineSignals
 from roadproof.semantics.exact.truth import NEVER, TruthSet
 from roadproof.world.signals import SIGNALS, STARTING
@@ -37,7 +37,7 @@ Values: TypeAlias = Mapping[str, Fraction]
 
 
 @dataclass(frozen=True)
-class Quantity:
+class InitialQuantity:
     """An initial value: its unit, the value where none is given (SI), and what it is.
 
     It is at least 0, or above that where ``is_open``. ``is_optional``: where none is given there is none.
@@ -61,7 +61,7 @@ class Quantity:
 def initial_value(
     unit: str, value: Fraction, doc: str, is_open: bool = False, is_optional: bool = False
 ) -> Any:
-    """A field that is an initial value, as ``Quantity`` has it."""
+    """A field that is an initial value, as ``InitialQuantity`` has it."""
     metadata = {"of": (unit, value, doc, is_open, is_optional)}
     return field(metadata=metadata, default=None) if is_optional else field(metadata=metadata)
 
@@ -81,7 +81,7 @@ class _Start:
 
     @property
     def middle(self) -> Fraction:
-        """Where the left side of a vehicle in the middle of the lane of SV is."""
+        """Return where the left side of a vehicle in the middle of the lane of SV is."""
         return (self.lane + self.width) / 2
 
 
@@ -112,12 +112,12 @@ class CutOut(_Start):
 
     @property
     def first(self) -> Fraction:
-        """Where the front of the vehicle that cuts out is, from that of SV."""
+        """Return where the front of the vehicle that cuts out is, from that of SV."""
         return self.headway * self.Ve0 + self.length
 
     @property
     def second(self) -> Fraction:
-        """Where the front of the vehicle is that the cut-out reveals."""
+        """Return where the front of the vehicle is that the cut-out reveals."""
         return self.first + self.dx0_f + self.length
 
 
@@ -153,17 +153,17 @@ class Manoeuvre:
     sheet: Mapping[str, tuple[Fraction, ...]]
 
     @cached_property
-    def quantities(self) -> Mapping[str, Quantity]:
+    def quantities(self) -> Mapping[str, InitialQuantity]:
         """The initial values by name: the speed of SV first, the sizes of vehicles last."""
         ordered = sorted(fields(self.start), key=lambda x: (x.name in ("length", "width"), x.name != "Ve0"))
-        return MappingProxyType({x.name: Quantity(x.name, *x.metadata["of"]) for x in ordered})
+        return MappingProxyType({x.name: InitialQuantity(x.name, *x.metadata["of"]) for x in ordered})
 
     def values(self, given: Values) -> dict[str, Fraction]:
         """All initial values. Raises ``UsageError`` for unknown names, and for what no vehicle can have."""
         for name in given:
             if name not in self.quantities:
                 raise UsageError(
-                    f"{name}: {unknown('initial value of a ' + self.name, name, self.quantities)}"
+                    f"{name}: {unknown_name('initial value of a ' + self.name, name, self.quantities)}"
                 )
         values = {
             name: given.get(name, x.value)
@@ -220,7 +220,7 @@ def start_of(manoeuvre: Manoeuvre, values: Values) -> Start:
 
 
 def is_possible(values: Values) -> bool:
-    """Whether no vehicle would have to go backwards."""
+    """Return whether no vehicle would have to go backwards."""
     return "dV0" not in values or values["dV0"] <= values["Ve0"]
 
 
@@ -228,7 +228,7 @@ def along_line(manoeuvre: Manoeuvre, values: Values) -> LineSignals:
     """The states along the line through ``values``: every signal is an affine function of what runs."""
     begin = signals_of(manoeuvre, {**values, manoeuvre.line: Fraction(0)})
     one = signals_of(manoeuvre, {**values, manoeuvre.line: Fraction(1)})
-    signals: dict[Signal | Own, Polynomial] = {
+    signals: dict[Signal | CustomSignal, TimePolynomial] = {
         Signal(*key): polynomial(value, one[key] - value) for key, value in begin.items()
     }
     box: tuple[SizeName, ...] = ("length", "width")
@@ -314,7 +314,7 @@ def plane_of(
 
 
 def line(plane: Plane, formula: Formula, row: Fraction) -> TruthSet:
-    """At which places of a row's line a bound formula is true; nowhere where a vehicle would go backwards."""
+    """Return the places of a row's line where a bound formula is true; none where a vehicle would reverse."""
     values = plane.values(row)
     if not is_possible(values):
         return NEVER

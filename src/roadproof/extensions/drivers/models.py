@@ -1,14 +1,17 @@
-"""The driver models of ``driver.spec``, and what its definitions are called, which no other file knows."""
+"""The driver models that are installed, and the names of their definitions, which no other file knows."""
 
 from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
-from typing import Final, Literal, TypeAlias
+from typing import Final
 
 from roadproof.errors import UsageError
+from roadproof.extension import entries, imported
+from roadproof.extensions.drivers.driver_model import DriverModel, Law
+from roadproof.extensions.drivers.driver_settings import OPTIONS, PARAMETERS
+from roadproof.extensions.drivers.lemmas import Lemma, parsed_lemmas
 from roadproof.extensions.drivers.manoeuvres import Course, ManoeuvreName
 from roadproof.library.scenarios import LANE, disturbance_name, name_of, number_in
-from roadproof.library.specification import unknown
-from roadproof.runtime.records import dataclass
+from roadproof.library.specification import unknown_name
 
 DRIVERS = "driver"
 """What the file of the definitions is called, among those that are read on request."""
@@ -32,80 +35,86 @@ _FORESEEN: Mapping[Course, str] = MappingProxyType(
 )
 
 
-ModelName: TypeAlias = Literal["careful", "r157", "eu1426", "rss", "fsm"]
-
-
-@dataclass(frozen=True)
-class Model:
-    """A driver: what it is called, and what it says where.
-
-    ``is_stepped``: a controller that is looked at place by place, and has no formula.
-    """
-
-    name: ModelName
-    title: str
-    manoeuvres: tuple[ManoeuvreName, ...]
-    source: str
-    is_stepped: bool = False
-
-
-MODELS: Mapping[str, Model] = MappingProxyType(
-    {
-        model.name: model
-        for model in (
-            Model(
-                "careful",
-                "competent and careful driver",
-                ("cut-in", "cut-out", "deceleration"),
-                "UN R157 (01 series), Annex 3",
-            ),
-            Model("r157", "UN R157 5.2.5.2", ("cut-in",), "UN R157 (01 series), 5.2.5.2"),
-            Model("eu1426", "EU 2022/1426", ("cut-in",), "EU 2022/1426, Annex III Part 1, 1.4.2"),
-            Model(
-                "rss",
-                "RSS proper response",
-                ("cut-in", "deceleration"),
-                "Shalev-Shwartz et al. 2017; values of the paper",
-            ),
-            Model(
-                "fsm",
-                "fuzzy safety model",
-                ("cut-in", "cut-out", "deceleration"),
-                "UN R157 (01 series), Annex 3; JRC-FSM",
-                is_stepped=True,
-            ),
-        )
-    }
+MODELS: Mapping[str, DriverModel] = MappingProxyType(
+    {name: imported("drivers", name) for name in entries("drivers")}
 )
+"""The driver models of all extensions by name; other packages add rows of their own."""
 
 
-def models_for(manoeuvre: ManoeuvreName, names: tuple[str, ...] = ()) -> tuple[Model, ...]:
-    """The models of that name, or all with a formula for a manoeuvre. Raises ``UsageError``."""
+def driver_model(name: str) -> DriverModel:
+    """Return a model by its name. Raises ``UsageError``."""
+    if name not in MODELS:
+        raise UsageError(f"model={name}: {unknown_name('driver model', name, MODELS)}")
+    return MODELS[name]
+
+
+def entry_of(name: str) -> str:
+    """Return the entry of a model in the record of its extension, as ``module:name``."""
+    return entries("drivers")[name]
+
+
+def law_of(name: str) -> Law:
+    """Return the law of a model that has formulas. Raises ``UsageError``."""
+    law = driver_model(name).law
+    if law is None:
+        formulas = ", ".join(x.name for x in MODELS.values() if x.law is not None)
+        raise UsageError(f"model={name}: {name} is a controller and has no formula; these have: {formulas}")
+    return law
+
+
+def specifications() -> tuple[str, ...]:
+    """The names of the specifications with the definitions of driver models."""
+    own = (x.law.specification for x in MODELS.values() if x.law is not None and x.law.specification)
+    return (DRIVERS, *dict.fromkeys(own))
+
+
+def parameters_of(name: str) -> tuple[str, ...]:
+    """The names of the parameters with which a model moves."""
+    law = driver_model(name).law
+    return PARAMETERS if law is None else (*PARAMETERS, *law.parameters)
+
+
+def options_of(name: str) -> tuple[str, ...]:
+    """The names of the options on which a model depends."""
+    law = driver_model(name).law
+    return OPTIONS if law is None else (*OPTIONS, *law.options)
+
+
+def models_for(manoeuvre: ManoeuvreName, names: tuple[str, ...] = ()) -> tuple[DriverModel, ...]:
+    """The models of these names, or all with a formula for a manoeuvre. Raises ``UsageError``."""
     for name in names:
-        if name not in MODELS:
-            raise UsageError(f"model={name}: {unknown('driver model', name, MODELS)}")
-        if manoeuvre not in MODELS[name].manoeuvres:
-            said = ", ".join(x.name for x in MODELS.values() if manoeuvre in x.manoeuvres)
+        if manoeuvre not in driver_model(name).manoeuvres:
+            able = ", ".join(x.name for x in MODELS.values() if manoeuvre in x.manoeuvres)
             raise UsageError(
-                f"model={name}: {MODELS[name].source} says nothing of a {manoeuvre}; these do: {said}"
+                f"model={name}: {MODELS[name].source} says nothing of a {manoeuvre}; these do: {able}"
             )
     return tuple(MODELS[name] for name in names) or tuple(
         x for x in MODELS.values() if manoeuvre in x.manoeuvres and not x.is_stepped
     )
 
 
+def lemmas_for(manoeuvre: ManoeuvreName, models: Sequence[DriverModel], aeb: str = "none") -> list[Lemma]:
+    """Return the lemmas on which the boundaries of these models rest, each model with its own braking.
+
+    ``aeb``: what AEB does in a cut-in of the careful driver, as the option ``cc_aeb``.
+    """
+    laws = ((x.name, x.law) for x in models if x.law is not None)
+    stated = (y for name, x in laws for y in x.lemmas(name, (x.ramp, x.braking), manoeuvre, aeb))
+    return parsed_lemmas(stated)
+
+
 def course_in(number: int) -> ManoeuvreName | None:
-    """The manoeuvre that a scenario is the course of, on any road sector; None where it is of none."""
+    """Return the manoeuvre that happens in a scenario, on any road sector, or None."""
     return next((x for x, first in SCENARIOS.items() if number - first in _SECTORS), None)
 
 
 def courses_of(name: str) -> tuple[int, ...]:
-    """The scenarios that are the course of a manoeuvre of which a model says something, in order."""
+    """Return the numbers of the scenarios in which a manoeuvre of a model happens, in order."""
     return tuple(sorted(SCENARIOS[x] + later for x in MODELS[name].manoeuvres for later in _SECTORS))
 
 
 def check_drivers(names: Sequence[str], numbers: Collection[int]) -> None:
-    """Each model is there, once, and speaks of one of the scenarios. Raises ``UsageError``."""
+    """Check that each model exists, once, and applies to one of the scenarios. Raises ``UsageError``."""
     if len({*names}) < len(names):
         raise UsageError(f"drivers={','.join(names)}: one is named twice; name different models")
     for name in names:
@@ -113,26 +122,43 @@ def check_drivers(names: Sequence[str], numbers: Collection[int]) -> None:
         check_courses(name, numbers, f"drivers={','.join(names)}")
 
 
-def check_driver(name: str, said: str) -> None:
-    """The model is there; ``said`` is what was asked. Raises ``UsageError``."""
+def check_driver(name: str, option: str) -> None:
+    """Check that a model exists; ``option`` is the option with its value. Raises ``UsageError``."""
     if name not in MODELS:
-        raise UsageError(f"{said}: {unknown('driver model', name, MODELS)}")
+        raise UsageError(f"{option}: {unknown_name('driver model', name, MODELS)}")
 
 
-def check_formulas(name: str, said: str) -> None:
-    """As ``check_driver``, and the model has formulas. Raises ``UsageError``."""
-    check_driver(name, said)
-    if MODELS[name].is_stepped:
-        formulas = ", ".join(x.name for x in MODELS.values() if not x.is_stepped)
-        raise UsageError(f"{said}: {name} is a controller and has no formula; these have: {formulas}")
+def check_restricts(name: str, requested: str) -> None:
+    """Check that a model restricts questions; ``requested`` is the option with its value.
+
+    Raises ``UsageError``.
+    """
+    check_driver(name, requested)
+    law = MODELS[name].law
+    if law is None:
+        able = ", ".join(x.name for x in MODELS.values() if x.law is not None and x.law.restriction)
+        raise UsageError(f"{requested}: {name} is a controller and has no formula; these have: {able}")
+    if law.restriction is None:
+        raise UsageError(
+            f"{requested}: the law of {name} names no restriction; its package must add one: a file that "
+            f"python -m roadproof.extensions.drivers.restriction_file {name} prints, in the slot "
+            "specifications of its record and as restriction of its law"
+        )
 
 
-def check_courses(name: str, numbers: Collection[int], said: str) -> None:
-    """The model speaks of one of the scenarios. Raises ``UsageError``."""
+def restriction_specifications(name: str) -> tuple[str, ...]:
+    """Return the names of the specifications that a question restricted by a model is read with, in order."""
+    law = MODELS[name].law if name in MODELS else None
+    own = () if law is None else (law.specification, PREVENTION, law.restriction)
+    return tuple(dict.fromkeys(x for x in (DRIVERS, *own, PREVENTION) if x))
+
+
+def check_courses(name: str, numbers: Collection[int], option: str) -> None:
+    """Check that a model applies to one of the scenarios. Raises ``UsageError``."""
     known = courses_of(name)
     if not {*known} & {*numbers}:
         raise UsageError(
-            f"{said}: {name} does not apply to the selected scenarios "
+            f"{option}: {name} does not apply to the selected scenarios "
             f"({', '.join(map(str, numbers)) or 'none'}); it applies to {', '.join(map(str, known))}: "
             "select one of these, or omit the model"
         )
@@ -143,13 +169,16 @@ def manoeuvre_of(name: str) -> tuple[ManoeuvreName, int | None]:
 
     Raises ``UsageError``.
     """
-    numbers = {number: manoeuvre for said in (SCENARIOS, _CHANGING) for manoeuvre, number in said.items()}
+    tables = (SCENARIOS, _CHANGING)
+    numbers = {number: manoeuvre for table in tables for manoeuvre, number in table.items()}
     number = int(name) if name.isdecimal() else number_in(name)
-    found = next((x for x in SCENARIOS if x == name), None) if number is None else numbers.get(number)
-    if found is None:
+    manoeuvre_name = (
+        next((x for x in SCENARIOS if x == name), None) if number is None else numbers.get(number)
+    )
+    if manoeuvre_name is None:
         known = ", ".join(f"{x} (scenarios {SCENARIOS[x]}, {_CHANGING[x]})" for x in SCENARIOS)
         raise UsageError(f"'{name}' is not a manoeuvre of driver models; known are {known}")
-    return found, number
+    return manoeuvre_name, number
 
 
 def parts_of(number: int, vehicles: tuple[str, ...]) -> tuple[str, str]:
@@ -158,8 +187,8 @@ def parts_of(number: int, vehicles: tuple[str, ...]) -> tuple[str, str]:
     Where SV changes lanes the scenario has one POV, the first.
     """
     those = (*(vehicles[:2] if number in _CHANGING.values() else vehicles), LANE)
-    said = ", ".join(those)
-    return f"{name_of(number)}({said})", f"{disturbance_name(number)}({said})"
+    arguments = ", ".join(those)
+    return f"{name_of(number)}({arguments})", f"{disturbance_name(number)}({arguments})"
 
 
 def _word(manoeuvre: Course) -> str:
@@ -198,8 +227,8 @@ def untouched(vehicles: tuple[str, ...]) -> str:
 
 
 def boundary_of(manoeuvre: Course, model: str, vehicles: tuple[str, ...]) -> str:
-    """What is true where a collision is unpreventable: of the state, or, for want of that, of the drive."""
-    return touched(vehicles) if MODELS[model].is_stepped else unpreventable(manoeuvre, model, vehicles)
+    """Return the formula of an unpreventable collision: of the state, or of a controller's drive."""
+    return touched(vehicles) if driver_model(model).is_stepped else unpreventable(manoeuvre, model, vehicles)
 
 
 def foreseen(manoeuvre: Course, vehicles: tuple[str, ...]) -> str:

@@ -44,11 +44,12 @@ class Prevention(Settings):
     @classmethod
     def with_files(cls, args: argparse.Namespace, files: list[Path]) -> list[Path]:
         """Return specification files with those that the restriction of the command line needs."""
-        if not (args.preventable or args.unpreventable):
+        model = args.preventable or args.unpreventable
+        if not model:
             return files
         from roadproof.extensions.drivers.restriction import names_for  # loads the models
 
-        return names_for(files)
+        return names_for(files, model)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +63,7 @@ class PreventionOfDrives(Prevention):
 
 def add_drivers(args: argparse.Namespace) -> None:
     """Add the definitions of driver models to the files of ``--spec``."""
-    from roadproof.extensions.drivers.models import DRIVERS
+    from roadproof.extensions.drivers.models import specifications
 
     specs = args.specs or []
-    args.specs = specs if Path(DRIVERS) in specs else [Path(DRIVERS), *specs]
+    args.specs = [*(x for x in map(Path, specifications()) if x not in specs), *specs]

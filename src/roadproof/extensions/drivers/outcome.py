@@ -1,4 +1,4 @@
-"""What becomes of a test in which SV is driven by a model: prevented, a collision, or undecided."""
+"""The outcome of a test in which a model drives SV: prevented, a collision, or undecided."""
 
 from enum import StrEnum
 from typing import assert_never
@@ -54,10 +54,10 @@ def shown_by_drive(outcome: Outcome, vehicles: tuple[str, ...]) -> str:
             assert_never(outcome.result)
 
 
-def told_faster(speed: float) -> str:
+def faster_text(speed: float) -> str:
     """Return in words how much faster SV is, in m/s.
 
-    >>> told_faster(-8.33)
+    >>> faster_text(-8.33)
     '8.33 m/s slower'
     """
     return f"{abs(speed):g} m/s {'slower' if speed < 0 else 'faster'}"

@@ -1,4 +1,4 @@
-"""Which initial values of a manoeuvre a driver can prevent a collision from."""
+"""The function ``preventable``: from which initial values a driver prevents a collision."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -6,37 +6,47 @@ from fractions import Fraction
 from typing import ClassVar, Unpack
 
 from roadproof.errors import UsageError
-from roadproof.evidence.kernels import Word
+from roadproof.evidence.kernels import KernelVerdict
 from roadproof.extensions.drivers import settings
 from roadproof.extensions.drivers.driving import require
 from roadproof.extensions.drivers.keywords import PreventableKeywords
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, Course, Manoeuvre
-from roadproof.extensions.drivers.models import DRIVERS, GRADUAL, manoeuvre_of, models_for, unpreventable
+from roadproof.extensions.drivers.models import (
+    GRADUAL,
+    manoeuvre_of,
+    models_for,
+    specifications,
+    unpreventable,
+)
 from roadproof.extensions.drivers.preventable import report
 from roadproof.extensions.drivers.preventable.cases import plate_cases
 from roadproof.extensions.drivers.preventable.question import PreventableQuestion
-from roadproof.extensions.drivers.preventable.view import LemmaResult, Plate, PreventableView, evidence_names
-from roadproof.extensions.kernel.boundary import Boundary, BoundaryRuling, settle
+from roadproof.extensions.drivers.preventable.view import (
+    LemmaResult,
+    PlateResult,
+    PreventableView,
+    evidence_names,
+)
+from roadproof.extensions.kernel.boundary import Boundary, BoundaryRuling, judge_boundary
 from roadproof.extensions.kernel.coq import ready
-from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, load
-from roadproof.frontends.api.pictures import drawn, drive_pictures
-from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.pictures import Picture, drawn, drive_pictures, picture
+from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import Number, exact
-from roadproof.library.specification import unknown
+from roadproof.library.specification import unknown_name
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 
 
 @dataclass(frozen=True, repr=False)
 class Plates(QuestionAnswers[PreventableView], BuildResult):
-    """Where a collision is unpreventable, exactly, with judged drives on both sides and proved lemmas.
+    """The plates, exact, with judged drives on both sides and proved lemmas.
 
     ``boundaries``: what Coq says of each formula and the motion of its model, where it was asked.
     """
@@ -54,7 +64,7 @@ class Plates(QuestionAnswers[PreventableView], BuildResult):
         return plate_cases(self.plates, self.lemmas, self.question.basis.specification, files)
 
     @property
-    def plates(self) -> Sequence[Plate]:
+    def plates(self) -> Sequence[PlateResult]:
         """The plates, in order."""
         return self.view.plates
 
@@ -71,12 +81,12 @@ class Plates(QuestionAnswers[PreventableView], BuildResult):
 
     @property
     def exit_code(self) -> ExitCode:
-        said = (
-            ExitCode.UNKNOWN if x.word is Word.UNKNOWN else ExitCode.CROSSCHECK_FAILED
+        codes = (
+            ExitCode.UNKNOWN if x.verdict is KernelVerdict.UNKNOWN else ExitCode.CROSSCHECK_FAILED
             for x in self.boundaries
-            if x.word is not Word.ACCEPTED
+            if x.verdict is not KernelVerdict.ACCEPTED
         )
-        return max(super().exit_code, *said, ExitCode.AS_EXPECTED)
+        return max(super().exit_code, *codes, ExitCode.AS_EXPECTED)
 
     @property
     def _sheet(self) -> Sheet[report.Entry]:
@@ -99,9 +109,9 @@ class Plates(QuestionAnswers[PreventableView], BuildResult):
 
     def __str__(self) -> str:
         time = took(self.seconds or None)
-        said = f"{count(len(self.plates), 'plate')}, {count(len(self.lemmas), 'lemma')}{time}"
+        summary = f"{count(len(self.plates), 'plate')}, {count(len(self.lemmas), 'lemma')}{time}"
         proved = "".join(f"{x}\n" for x in self.boundaries)
-        return f"{report.as_text(self.question, self.plates, self.lemmas)}\n{proved}{said}"
+        return f"{report.as_text(self.question, self.plates, self.lemmas)}\n{proved}{summary}"
 
 
 @takes(settings.Preventable)
@@ -111,7 +121,7 @@ def preventable(
     using: Definitions | None = None,
     **options: Unpack[PreventableKeywords],
 ) -> Plates:
-    """Where a collision is unpreventable for driver models, over planes of initial values.
+    """Compute where a collision is unpreventable for driver models, over planes of initial values.
 
     ``manoeuvre``: "cut-in", "cut-out" or "deceleration"; or a scenario in which it happens (1, 2 or 4; 5, 6
     or 8, where SV changes lanes), of which drives are then shown where there are such. ``models``: names,
@@ -121,7 +131,7 @@ def preventable(
     ``UsageError``.
     """
     given = settings.Preventable.of(options)
-    home = using or load(specs=[DRIVERS])
+    home = using or load(specs=[*specifications()])
     basis = basis_of(home, given)
     require(home.specification, basis.all_values())
     name, scenario = manoeuvre_of(str(manoeuvre))
@@ -144,24 +154,24 @@ def preventable(
     )
     question.check()
     boundaries = () if given.kernel is None else _boundaries(question)
-    return replace(Plates.settled(question, given), boundaries=boundaries)
+    return replace(Plates.decide(question, given), boundaries=boundaries)
 
 
 def _boundaries(question: PreventableQuestion) -> tuple[BoundaryRuling, ...]:
-    """What Coq says of the boundary of each model. Raises ``MissingSolverError``."""
+    """Return the rulings of Coq on the boundary of each model. Raises ``MissingSolverError``."""
     course: Course = GRADUAL if question.is_gradual else question.manoeuvre.name
     vehicles = question.manoeuvre.vehicles
-    asked = [
+    boundaries = [
         Boundary(course, x.name, unpreventable(course, x.name, vehicles), vehicles) for x in question.models
     ]
     with ready() as coq:
-        return tuple(settle(coq, question.basis.specification, x) for x in asked)
+        return tuple(judge_boundary(coq, question.basis.specification, x) for x in boundaries)
 
 
 def _values(kind: Manoeuvre, name: str, given: Number | Sequence[Number]) -> tuple[Fraction, ...]:
     """Initial values, SI. Raises ``UsageError``, ``InputError``."""
     if name not in kind.quantities:
-        raise UsageError(f"{name}: {unknown('initial value of a ' + kind.name, name, kind.quantities)}")
+        raise UsageError(f"{name}: {unknown_name('initial value of a ' + kind.name, name, kind.quantities)}")
     if name in (kind.line, kind.across):
         raise UsageError(f"{name} varies on the plate: give a range, or omit it")
     quantity = kind.quantities[name]

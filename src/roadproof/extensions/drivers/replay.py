@@ -11,26 +11,26 @@ from functools import cached_property
 from itertools import pairwise
 from math import ceil, isqrt
 
-from roadproof.extensions.drivers.driving import DriverSettings
+from roadproof.extensions.drivers.driver_settings import DriverSettings
 from roadproof.extensions.drivers.fuzzy import HERTZ
 from roadproof.extensions.drivers.fuzzy_looks import LONGEST, Sight, controlled, known_from
-from roadproof.extensions.drivers.lanes import Across, Box, across
+from roadproof.extensions.drivers.lanes import Across, VehicleBox, across
 from roadproof.extensions.drivers.manoeuvres import ManoeuvreName
-from roadproof.extensions.drivers.models import MODELS, ModelName, passed
+from roadproof.extensions.drivers.models import driver_model, passed
 from roadproof.extensions.drivers.outcome import Outcome, Result
-from roadproof.extensions.drivers.response import Phase, response
+from roadproof.extensions.drivers.response import Phase
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.runtime.records import dataclass
-from roadproof.semantics.exact.algebraic import approximate
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.algebraic import as_float
+from roadproof.semantics.exact.judging import judge
 from roadproof.semantics.exact.truth import Cut, TruthSet
 from roadproof.world.drive import Drive, Motion, Piece
-from roadproof.world.motion import starts_of, state_at, states_at
+from roadproof.world.motion import piece_starts, state_at, states_at
 from roadproof.world.road import Road
 
 _FINE = 10**6  # parts of a second: instants that are no fraction are taken so much later at most
@@ -52,28 +52,29 @@ def replay(
     road: Road,
     vehicles: tuple[str, ...],
     manoeuvre: ManoeuvreName,
-    model: ModelName,
+    model: str,
     since: Fraction,
     home: Specification,
     settings: DriverSettings,
 ) -> Replayed:
-    """Put a model into a drive on which a scenario holds from ``since`` (s) on.
+    """Replace the motion of SV from ``since`` (s) on, when the scenario holds, by the response of a model.
 
     ``vehicles``: SV first, the vehicle that it may hit last. ``home`` has the definitions of driver models.
     """
     me = vehicles[0]
     drive = replace(drive, vehicles={**drive.vehicles, me: unbraked(drive.vehicles[me], since)})
     scene = DriveScene(drive, road, vehicles, since)
-    if MODELS[model].is_stepped:
+    law = driver_model(model).law
+    if law is None:
         onset, phases = _looked(scene, manoeuvre)
     else:
-        found = response(model, manoeuvre, scene, settings)
-        onset, phases = (None, []) if found is None else (found.onset, [*found.phases])
+        response = law.respond(manoeuvre, scene, settings)
+        onset, phases = (None, []) if response is None else (response.onset, [*response.phases])
     driven = drive
     if onset is not None:
         mine = driven_from(drive.vehicles[me], onset, phases)
         driven = replace(drive, vehicles={**drive.vehicles, me: mine})
-    latest = since + LONGEST if MODELS[model].is_stepped else None
+    latest = since + LONGEST if law is None else None
     outcome = _judged(driven, vehicles, since, latest, home)
     return Replayed(replace(outcome, onset=None if onset is None else float(onset)), driven)
 
@@ -89,13 +90,13 @@ class DriveScene:
 
     @cached_property
     def across(self) -> Across:
-        """Where SV and the first POV begin across the road."""
+        """Return where SV and the first POV begin across the road."""
         me, other = (self._box(name) for name in self.vehicles[:2])
         return across(self.road, me, other, len(self.vehicles) == 2)
 
-    def _box(self, name: str) -> Box:
+    def _box(self, name: str) -> VehicleBox:
         motion, now = self.drive.vehicles[name], state_at(self.drive.vehicles[name], self.start)
-        return Box(now.s, now.d, motion.length, motion.width)
+        return VehicleBox(now.s, now.d, motion.length, motion.width)
 
     def offset(self, metres: Fraction) -> Fraction | None:
         here, other = self.across, self.vehicles[1]
@@ -173,7 +174,7 @@ def _at_or_after(cut: Cut) -> Fraction:
     """Return a cut's instant; one that is no fraction is taken at most a microsecond later."""
     if isinstance(cut.point, Fraction):
         return cut.point
-    return Fraction(ceil(approximate(cut.point) * _FINE) + 1, _FINE)
+    return Fraction(ceil(as_float(cut.point) * _FINE) + 1, _FINE)
 
 
 def _compare(left: t.Term, op: f.Comparison, right: Fraction, dimension: t.Dimension = _METRES) -> Formula:
@@ -185,7 +186,7 @@ def _compare(left: t.Term, op: f.Comparison, right: Fraction, dimension: t.Dimen
 
 def unbraked(motion: Motion, since: Fraction) -> Motion:
     """Return a motion without the pieces that brake from ``since`` on: there the speed stays what it is."""
-    starts = starts_of(motion)
+    starts = piece_starts(motion)
     times = sorted({x.time for x in starts} | {since})
     pieces: list[Piece] = []
     for begin, end in pairwise([*times, None]):
@@ -204,7 +205,7 @@ def driven_from(motion: Motion, onset: Fraction, phases: Sequence[Phase]) -> Mot
 
     Across the road it is as before until it stands, and then it moves no more.
     """
-    starts, speed, time = starts_of(motion), state_at(motion, onset).v_lon, onset
+    starts, speed, time = piece_starts(motion), state_at(motion, onset).v_lon, onset
     along = {x.time: (x.a_lon, x.j_lon) for x in starts if x.time < onset}
     for lasts, acceleration, jerk in until_it_stands(speed, phases):
         along[time] = acceleration, jerk
@@ -231,7 +232,7 @@ def driven_from(motion: Motion, onset: Fraction, phases: Sequence[Phase]) -> Mot
 
 def _at_rest_across(motion: Motion) -> Motion:
     """Return the motion with no speed across left at its end: it is lost in the last moment before."""
-    last = starts_of(motion)[-1]
+    last = piece_starts(motion)[-1]
     if last.v_lat == 0 or len(motion.pieces) < 2:
         return motion
     *before, piece, rest = motion.pieces
@@ -294,13 +295,13 @@ def _judged(
     touch, past = (first_cut(judgement.truth(x), since) for x in (touching, passing))
     if touch is not None and (past is None or touch <= past):
         if latest is not None and touch.point > latest:
-            return Outcome(Result.UNDECIDED, reason=Why.TOO_LONG(LONGEST), is_late=True)
+            return Outcome(Result.UNDECIDED, reason=ReasonKind.TOO_LONG(LONGEST), is_late=True)
         at = _at_or_after(touch)
         mine, its = (state_at(drive.vehicles[x], at) for x in (me, last))
         speed = round(float(mine.v_lon - its.v_lon), 2)
         return Outcome(Result.COLLIDES, instant=round(float(at), 3), speed=speed)
     if past is not None:
-        return Outcome(Result.UNDECIDED, reason=Why.PASSED_BY(round(approximate(past.point), 2)))
+        return Outcome(Result.UNDECIDED, reason=ReasonKind.PASSED_BY(round(as_float(past.point), 2)))
     return Outcome(Result.PREVENTED, gap=least_gap(drive, (me, last), since))
 
 
@@ -316,7 +317,7 @@ def least_gap(drive: Drive, pair: tuple[str, str], since: Fraction) -> float | N
     )
     judgement = judge(f.conjunction(way, speeds), drive)
     beside = judgement.truth(way)
-    knots = {x.time for name in pair for x in starts_of(drive.vehicles[name])}
+    knots = {x.time for name in pair for x in piece_starts(drive.vehicles[name])}
     ends = (cut for truth in (beside, judgement.truth(speeds)) for cut in truth.cuts)
     times = {since, *knots, *(_at_or_after(x) for x in ends)}
     looked = sorted(x for x in times if x >= since and beside.at(x))
@@ -332,14 +333,14 @@ def _looked(scene: DriveScene, manoeuvre: ManoeuvreName) -> tuple[Fraction | Non
     """Return when the fuzzy safety model first brakes, and its braking from look to look."""
     me, other = (scene.drive.vehicles[x] for x in (scene.vehicles[0], scene.vehicles[-1]))
     times = [scene.start + Fraction(k, HERTZ) for k in range(LONGEST * HERTZ)]
-    ends = [starts_of(motion)[-1] for motion in (me, other)]
+    ends = [piece_starts(motion)[-1] for motion in (me, other)]
     even = max(x.time for x in ends)
     is_straight = all(x.a_lon == x.a_lat == x.v_lat == 0 for x in ends)
     seen = (
         Sight(
             time,
-            Box(mine.s, mine.d, me.length, me.width),
-            Box(its.s, its.d, other.length, other.width),
+            VehicleBox(mine.s, mine.d, me.length, me.width),
+            VehicleBox(its.s, its.d, other.length, other.width),
             mine.v_lon,
             its.v_lon,
             mine.v_lat,

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, get_args
 
 from roadproof.errors import UsageError
-from roadproof.extensions.drivers.models import check_courses, check_formulas
+from roadproof.extensions.drivers.models import check_courses, check_restricts
 from roadproof.extensions.drivers.restriction import About, Restriction, Side, check_library, files_for
 from roadproof.frontends.api.definitions import Among, Definitions, What
 from roadproof.library.diagnose import checked_library
@@ -17,8 +17,6 @@ from roadproof.logic.formula import subformulas
 if TYPE_CHECKING:
     from roadproof.extensions.drivers.options import Prevention
 
-    pass
-
 
 def restricted(
     home: Definitions,
@@ -27,7 +25,7 @@ def restricted(
     what: Sequence[What] | None = None,
     about: About = "scenarios",
 ) -> Definitions:
-    """The same definitions under ``prevention.spec``; as they are where no driver model is named.
+    """Return the definitions under ``prevention.spec``, unchanged where no driver model is named.
 
     ``among`` or ``what``: what is asked for, among which there has to be a scenario of which the model says
     something; nothing of that where it is ``about`` drives. Raises ``InputError``, ``UsageError``.
@@ -37,23 +35,23 @@ def restricted(
     if not named:
         return home
     if len(named) > 1:
-        told = ", ".join(f"{side}={model}" for side, model in models.items())
-        raise UsageError(f"{told}: no drive satisfies both; omit one")
-    [wanted] = named
-    said = f"{wanted.side}={wanted.model}"
-    check_formulas(wanted.model, said)
-    files = files_for(home.library.files)
+        named_sides = ", ".join(f"{side}={model}" for side, model in models.items())
+        raise UsageError(f"{named_sides}: no drive satisfies both; omit one")
+    [restriction] = named
+    requested = f"{restriction.side}={restriction.model}"
+    check_restricts(restriction.model, requested)
+    files = files_for(home.library.files, restriction.model)
     library = home.library if len(files) == len(home.library.files) else checked_library(files)
     check_library(library)
-    options = {**home.specification.options, **wanted.options}
-    found = replace(home, specification=library.select(home.sets[0], options))
+    options = {**home.specification.options, **restriction.options}
+    result = replace(home, specification=library.select(home.sets[0], options))
     if about == "scenarios":
-        check_courses(wanted.model, [*dict.fromkeys(_asked(found, among, what))], said)
-    return found
+        check_courses(restriction.model, [*dict.fromkeys(_requested(result, among, what))], requested)
+    return result
 
 
-def _asked(home: Definitions, among: Among, what: Sequence[What] | None) -> Iterator[int]:
-    """The scenarios that are asked for, those that formulas speak of among them."""
+def _requested(home: Definitions, among: Among, what: Sequence[What] | None) -> Iterator[int]:
+    """Yield the numbers of the requested scenarios, with those that occur in formulas."""
     if not what:
         yield from home.among(among) or numbers_of(home.specification)
     for one in what or ():

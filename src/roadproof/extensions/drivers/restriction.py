@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 from roadproof.errors import InputError, UsageError
 from roadproof.extensions.drivers import models
+from roadproof.extensions.drivers.restriction_file import check_restriction_file
 from roadproof.library.elaborate import elaborate
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import initial_condition_name
@@ -31,8 +32,8 @@ from roadproof.logic.syntax import Claim, Definition
 from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
-    from roadproof.engines.search.outcome import Search
     from roadproof.engines.search.question import FoundDrive, SearchProblem
+    from roadproof.engines.setting import Search
 
 Side: TypeAlias = Literal["preventable", "unpreventable"]
 About: TypeAlias = Literal["scenarios", "drives"]
@@ -48,7 +49,7 @@ class Restriction:
 
     @property
     def options(self) -> dict[str, str]:
-        """As options of ``prevention.spec``."""
+        """The values of the options of ``prevention.spec``."""
         return {models.PREVENTION: self.side, models.DRIVEN_BY: self.model, models.BEGINS: self.about}
 
     @property
@@ -61,14 +62,19 @@ class Restriction:
         """The name of the driver model."""
         return self.model
 
-    def left_open(self, home: Specification) -> Specification:
+    @property
+    def relies_on(self) -> tuple[str, ...]:
+        """The entry of the driver model."""
+        return (models.entry_of(self.model),)
+
+    def with_opaque_driver(self, home: Specification) -> Specification:
         """Return the same definitions, but what a driver prevents is left open.
 
         What is proved of the scenarios alone is proved of these, too, and what is not is quickly refuted,
         where the formulas of a driver, cubic in the state, would keep a prover busy to no end.
         """
-        found = {x.name: x for x in parse_library(_OPEN, models.PREVENTION) if isinstance(x, Definition)}
-        return Specification(home.library, home.set_name, home.options, {**home.definitions, **found})
+        opaque = {x.name: x for x in parse_library(_OPEN, models.PREVENTION) if isinstance(x, Definition)}
+        return Specification(home.library, home.set_name, home.options, {**home.definitions, **opaque})
 
     def check_drives(self) -> None:
         """Raises ``UsageError`` where scenarios begin so: most drives are in none of them."""
@@ -89,16 +95,17 @@ class Restriction:
     def as_data(self, schema: str) -> dict[str, object]:
         """Return what an answer of this schema says of it, as plain data."""
         by = "formula" if self.about == "drives" or schema in _BY_FORMULA else "model"
-        said = {"side": self.side, "driver": self.model, "of": self.about}
-        return {"prevention": {**said, "scenarios": list(self.scenarios), "drives_by": by}}
+        fields = {"side": self.side, "driver": self.model, "of": self.about}
+        return {"prevention": {**fields, "scenarios": list(self.scenarios), "drives_by": by}}
 
     def __str__(self) -> str:
-        said = f"{self.side} ({models.MODELS[self.model].title}; by the formula of a state)"
+        title = models.MODELS[self.model].title
         if self.about == "scenarios":
             numbers = ", ".join(map(str, self.scenarios))
-            return f"{said}: scenarios {numbers} begin so, others are as they are"
+            return f"{self.side} ({title}): scenarios {numbers} begin so, others are as they are"
         kinds = " or ".join(x for x in models.MODELS[self.model].manoeuvres if x != "cut-out")
-        return f"{said}: drives between two vehicles begin so, with a {kinds}"
+        drives = f"drives between two vehicles begin so, with a {kinds}"
+        return f"{self.side} ({title}; by the formula of a state): {drives}"
 
 
 EVERY = tuple(
@@ -128,14 +135,14 @@ def begins_between(a, b: vehicle) "left open" := a_lat(a) > a_lat(b)
 
 
 def unrestricted(specification: Specification) -> Specification:
-    """The same definitions, but scenarios begin as the library says."""
+    """Return the definitions with scenarios that begin as the library says."""
     options = specification.options
     if restriction_of(options) is None:
         return specification
     return specification.library.select(specification.set_name, {**options, models.BEGINS: "drives"})
 
 
-def said_in(query: Query, home: Specification, there: Specification) -> Query:
+def restated_in(query: Query, home: Specification, there: Specification) -> Query:
     """``query``, read in ``home``, so that its text says the same in ``there``.
 
     Definitions that say something else there are written out. Raises ``InputError`` where that cannot be.
@@ -167,7 +174,7 @@ def said_in(query: Query, home: Specification, there: Specification) -> Query:
 
 
 def _bare(formula: Formula) -> Formula:
-    """Without names, and without parts that are always true, as a text that is read has none."""
+    """Return a formula without names and without parts that are always true, as a parsed text has none."""
 
     def change(part: Formula) -> Formula:
         match part:
@@ -175,22 +182,29 @@ def _bare(formula: Formula) -> Formula:
                 return f.conjunction(*parts)
             case f.Or(parts):
                 return f.disjunction(*parts)
-            case _:
+            case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.Application():
+                return part
+            case f.Until() | f.Eventually() | f.Always():
                 return part
 
     return f.transform(without_names(formula), change)
 
 
-def files_for(given: Sequence[Source]) -> list[Path | Source]:
-    """The specification files that a restriction needs, with those that are given on top."""
-    needed = [read_specification(on_request()[name]) for name in (models.DRIVERS, models.PREVENTION)]
-    mine = {x.text for x in needed}
-    return [*needed, *(x for x in given if x.text not in mine)]
+def files_for(given: Sequence[Source], model: str) -> list[Path | Source]:
+    """The specification files that a restriction by a model needs, with those that are given on top.
+
+    Raises ``InputError`` where the file of a package is not the one that ``restriction_file`` writes.
+    """
+    names = models.restriction_specifications(model)
+    needed = [read_specification(on_request()[name]) for name in names]
+    check_restriction_file(models.MODELS[model], needed[-1])
+    texts = {x.text for x in needed}
+    return [*needed, *(x for x in given if x.text not in texts)]
 
 
-def names_for(given: Sequence[Path]) -> list[Path]:
-    """As ``files_for``, of names as ``--spec`` takes them."""
-    needed = [Path(models.DRIVERS), Path(models.PREVENTION)]
+def names_for(given: Sequence[Path], model: str) -> list[Path]:
+    """Return the names of these files, as ``--spec`` takes them."""
+    needed = [*map(Path, models.restriction_specifications(model))]
     return [*needed, *(x for x in given if x not in needed)]
 
 

@@ -12,16 +12,16 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from roadproof.extensions.drivers.driving import DriverSettings
+from roadproof.extensions.drivers.driver_settings import DriverSettings
 from roadproof.extensions.drivers.fuzzy import HERTZ
 from roadproof.extensions.drivers.fuzzy_looks import LONGEST, Sight, controlled, known_from
-from roadproof.extensions.drivers.lanes import Across, Box, across
+from roadproof.extensions.drivers.lanes import Across, VehicleBox, across
 from roadproof.extensions.drivers.manoeuvres import ManoeuvreName
-from roadproof.extensions.drivers.models import MODELS, ModelName
+from roadproof.extensions.drivers.models import driver_model
 from roadproof.extensions.drivers.outcome import Outcome, Result
 from roadproof.extensions.drivers.replay import until_it_stands
-from roadproof.extensions.drivers.response import Phase, response
-from roadproof.reasons import Why
+from roadproof.extensions.drivers.response import Phase
+from roadproof.reasons import ReasonKind
 from roadproof.runtime.records import dataclass
 from roadproof.world.road import Road
 from roadproof.world.signals import RECORDED, STARTING, SignalName
@@ -46,9 +46,9 @@ class Track:
     length: float
     width: float
 
-    def box(self, k: int) -> Box:
+    def box(self, k: int) -> VehicleBox:
         """Return the box at a sample, rounded to a micrometre."""
-        return Box(*(_exact(x) for x in (self.s[k], self.d[k], self.length, self.width)))
+        return VehicleBox(*(_exact(x) for x in (self.s[k], self.d[k], self.length, self.width)))
 
 
 TRACKED: tuple[SignalName, ...] = tuple(x for x in RECORDED if x in {y.name for y in fields(Track)})
@@ -71,7 +71,7 @@ class SampledScene:
 
     @cached_property
     def across(self) -> Across:
-        """Where SV and the first POV begin across the road."""
+        """Return where SV and the first POV begin across the road."""
         me, other = (self.tracks[x].box(self.first_sample) for x in self.vehicles[:2])
         return across(self.road, me, other, len(self.vehicles) == 2)
 
@@ -115,10 +115,10 @@ class SampledScene:
     def _first(self, margin: Floats, since: Fraction | None = None) -> Fraction | None:
         """Return the first instant at which a margin, straight between samples, is 0 or more."""
         begin = self.first_sample if since is None else max(0, -int(-since // self.step))
-        found = np.flatnonzero(margin[begin:] >= 0)
-        if not len(found):
+        samples = np.flatnonzero(margin[begin:] >= 0)
+        if not len(samples):
             return None
-        k = begin + int(found[0])
+        k = begin + int(samples[0])
         if k == begin or not np.isfinite(margin[k - 1]):
             return k * self.step
         part = float(margin[k - 1] / (margin[k - 1] - margin[k]))
@@ -132,17 +132,18 @@ def in_way(me: Track, other: Track) -> Bools:
 
 
 def replay_samples(
-    scene: SampledScene, manoeuvre: ManoeuvreName, model: ModelName, settings: DriverSettings
+    scene: SampledScene, manoeuvre: ManoeuvreName, model: str, settings: DriverSettings
 ) -> Outcome:
-    """Put a model into samples on which a scenario holds from the first sample of the scene on."""
+    """Replace the motion of SV from the first sample of the scene on by the response of a model."""
     me = scene.vehicles[0]
     tracks = {**scene.tracks, me: _unbraked(scene.tracks[me], scene.first_sample, scene.step)}
     scene = replace(scene, tracks={name: _longer(x, scene.step) for name, x in tracks.items()})
-    if MODELS[model].is_stepped:
+    law = driver_model(model).law
+    if law is None:
         onset, phases = _looked(scene, manoeuvre)
     else:
-        found = response(model, manoeuvre, scene, settings)
-        onset, phases = (None, []) if found is None else (found.onset, [*found.phases])
+        response = law.respond(manoeuvre, scene, settings)
+        onset, phases = (None, []) if response is None else (response.onset, [*response.phases])
     mine = scene.tracks[me]
     driven = mine if onset is None else _driven(mine, scene.step, onset, phases)
     outcome = _judged(driven, scene)
@@ -165,12 +166,12 @@ def _longer(track: Track, step: Fraction) -> Track:
     """Return a track that goes on after its last sample as fast as there, straight on, for ``LONGEST`` s."""
     count = int(LONGEST / step)
     ahead = np.arange(1, count + 1) * float(step)
-    last = {name: getattr(track, name)[-1] for name in ("s", "d", "v_lon")}
+    s, d, v_lon = track.s[-1], track.d[-1], track.v_lon[-1]
     return replace(
         track,
-        s=np.concatenate((track.s, last["s"] + last["v_lon"] * ahead)),
-        d=np.concatenate((track.d, np.full(count, last["d"]))),
-        v_lon=np.concatenate((track.v_lon, np.full(count, last["v_lon"]))),
+        s=np.concatenate((track.s, s + v_lon * ahead)),
+        d=np.concatenate((track.d, np.full(count, d))),
+        v_lon=np.concatenate((track.v_lon, np.full(count, v_lon))),
         v_lat=np.concatenate((track.v_lat, np.zeros(count))),
         a_lon=np.concatenate((track.a_lon, np.zeros(count))),
     )
@@ -210,7 +211,7 @@ def _judged(mine: Track, scene: SampledScene) -> Outcome:
         speed = float(np.interp(touch, samples, mine.v_lon - other.v_lon))
         return Outcome(Result.COLLIDES, instant=round(touch * step, 3), speed=round(speed, 2))
     if past is not None:
-        return Outcome(Result.UNDECIDED, reason=Why.PASSED_BY(round(past * step, 2)))
+        return Outcome(Result.UNDECIDED, reason=ReasonKind.PASSED_BY(round(past * step, 2)))
     least = gap[begin:][in_way(mine, other)[begin:]]
     return Outcome(Result.PREVENTED, gap=round(float(least.min()), 2) if len(least) else None)
 
@@ -228,10 +229,10 @@ def _first_together(begin: int, *margins: Floats) -> float | None:
             crossing = now / (now - later)
         low = np.maximum(low, np.where(now >= 0, 0.0, np.where(later >= 0, crossing, 2.0)))
         high = np.minimum(high, np.where(later >= 0, 1.0, np.where(now >= 0, crossing, -1.0)))
-    found = np.flatnonzero(low[begin:] <= high[begin:])
-    if not len(found):
+    intervals = np.flatnonzero(low[begin:] <= high[begin:])
+    if not len(intervals):
         return None
-    k = begin + int(found[0])
+    k = begin + int(intervals[0])
     return k + float(low[k])
 
 
@@ -254,7 +255,7 @@ def _sight(
 ) -> Sight:
     (s, d, v, u), (its_s, its_d, its_v, its_u) = ([_exact(x[k]) for x in those] for those in columns)
     mine, its = ((_exact(x.length), _exact(x.width)) for x in tracks)
-    return Sight(time, Box(s, d, *mine), Box(its_s, its_d, *its), v, its_v, u, its_u, is_even)
+    return Sight(time, VehicleBox(s, d, *mine), VehicleBox(its_s, its_d, *its), v, its_v, u, its_u, is_even)
 
 
 def _exact(value: float) -> Fraction:

@@ -1,4 +1,4 @@
-"""What the schemas of the JSON files of this extension are called."""
+"""Titles of the schemas of this extension's JSON files."""
 
 from collections.abc import Mapping
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from roadproof.errors import UsageError
 from roadproof.frontends.settings import groups, readers
 from roadproof.frontends.settings.option import extensible, option
-from roadproof.frontends.settings.readers import (
-    whole,
-)
+from roadproof.frontends.settings.readers import whole
 from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
@@ -19,9 +19,23 @@ if TYPE_CHECKING:
     from roadproof.library.bind import Number
 
 
+def initial_values(text: str) -> tuple[str, list[str]]:
+    """``NAME=VALUE`` with one value or several, as a pair."""
+    name, equals, value = text.partition("=")
+    if not equals or not value.strip():
+        example = "Ve0=60km/h,90km/h"
+        raise UsageError(f"{text}: write NAME=VALUE, or several with commas, such as {example}")
+    return name.strip(), [x.strip() for x in value.split(",")]
+
+
+def flat(lists: Iterable[Iterable[str]]) -> list[str]:
+    """The texts of several lists in one."""
+    return [text for texts in lists for text in texts]
+
+
 @extensible("preventable")
 @dataclass(frozen=True, kw_only=True)
-class Preventable(groups.Definitions, groups.Budget, groups.Sharing, groups.Run):
+class Preventable(groups.DefinitionsSettings, groups.BudgetSettings, groups.Sharing, groups.Run):
     """Options of ``preventable``."""
 
     models: Sequence[str] = option(
@@ -29,14 +43,14 @@ class Preventable(groups.Definitions, groups.Budget, groups.Sharing, groups.Run)
         "--model NAME",
         "driver model: careful, r157, eu1426, rss or fsm (default: all but fsm)",
         read=readers.items_of("names", ", such as careful,r157"),
-        gather=readers.flat,
+        gather=flat,
         keyword=False,
     )
     at: Mapping[str, Number | Sequence[Number]] | None = option(
         None,
         "--at NAME=VALUE[,…]",
         "fix an initial value; several values make several plates",
-        read=readers.initial_values,
+        read=initial_values,
         gather=dict,
     )
     along: tuple[Number, Number] | None = option(

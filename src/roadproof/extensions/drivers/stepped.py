@@ -11,7 +11,7 @@ from itertools import groupby
 from math import ceil
 
 from roadproof.errors import InputError
-from roadproof.extensions.drivers import manoeuvres as m
+from roadproof.extensions.drivers import manoeuvres
 from roadproof.extensions.drivers.fuzzy import HERTZ, TICKS, Controller, Scale, moved, scale_of, slip, step
 from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Along
@@ -27,7 +27,7 @@ _WANDER = Fraction("0.375")  # m: past it POV is seen to cut out
 
 @dataclass(frozen=True)
 class Course:
-    """SV's brakings (m/s²) with for how many looks each is held; then it goes on.
+    """The brakings (m/s²) of SV, with for how many looks it holds each; then it goes on.
 
     ``touches``: whether the boxes touch, and SV has not passed the other vehicle before.
     """
@@ -37,7 +37,7 @@ class Course:
 
     @property
     def along(self) -> list[Along]:
-        """As pieces of a motion."""
+        """The pieces of the motion along the road."""
         made: list[Along] = []
         for count, braking in self.brakings:
             made += count * step(braking) if braking else [(Fraction(count, HERTZ), -braking, Fraction(0))]
@@ -62,32 +62,32 @@ class _Other:
 
     @cached_property
     def begins(self) -> int:
-        """From when on the controller knows of it, and it is in the way; rounded up."""
+        """The time from which the other is in the way and the controller knows of it; rounded up."""
         return max(ceil(self.in_way), TICKS * self.seen)
 
     @cached_property
     def in_way(self) -> Fraction:
-        """When the boxes begin to be side by side, in units of time."""
+        """The time at which the boxes begin to be side by side, in units of time."""
         return Fraction(self.beside, self.lateral) if self.beside > 0 else Fraction(0)
 
     def at(self, time: int) -> tuple[int, int]:
-        """How far it has gone, and how fast it is."""
+        """Return how far it has gone, and how fast it is."""
         if self.braking * time <= self.speed:
             return time * (2 * self.speed - self.braking * time) // 2, self.speed - self.braking * time
         return self.speed * self.speed // (2 * self.braking), 0
 
 
-def _other(start: m.Start) -> tuple[_Other, int]:
+def _other(start: manoeuvres.Start) -> tuple[_Other, int]:
     """The other vehicle, and SV's speed, in units."""
     speed, lateral, seen = start.Ve0, Fraction(0), 0
     beside, braking = Fraction(0), Fraction(0)
     match start:
-        case m.CutIn():
+        case manoeuvres.CutIn():
             gap, other, beside, lateral = start.dx0, speed - start.dV0, start.dy0, start.Vy
-        case m.CutOut():
+        case manoeuvres.CutOut():
             gap, other = start.second - start.length, start.Vf0
             seen = int(_WANDER / start.Vy * HERTZ) + 1
-        case m.Deceleration():
+        case manoeuvres.Deceleration():
             gap, other, braking = start.dx0, speed - start.dV0, start.Gx
     stops = other**2 / (2 * braking) if braking else Fraction(0)
     lengths = 2 * start.length
@@ -105,12 +105,12 @@ def _other(start: m.Start) -> tuple[_Other, int]:
     return units, scale.speed(speed)
 
 
-def course_of(manoeuvre: m.Manoeuvre, values: m.Values, to_the_end: bool = True) -> Course:
-    """How SV drives from these values on; not ``to_the_end``: only whether the boxes touch, no brakings.
+def course_of(manoeuvre: manoeuvres.Manoeuvre, values: manoeuvres.Values, to_the_end: bool = True) -> Course:
+    """Return how SV drives from these values on; if not ``to_the_end``, only whether the boxes touch.
 
     Raises ``InputError`` where SV would have to look too often.
     """
-    other, speed = _other(m.start_of(manoeuvre, values))
+    other, speed = _other(manoeuvres.start_of(manoeuvre, values))
     controller = Controller(other.scale)
     brakings: list[tuple[int, int]] = []
     gone, time, touches, passed = 0, 0, False, False
@@ -124,7 +124,7 @@ def course_of(manoeuvre: m.Manoeuvre, values: m.Values, to_the_end: bool = True)
         acts = braking > 0 or controller.waits
         if ((touches or passed) and not to_the_end) or _is_over(other, state, acts and to_the_end):
             touches = touches or (not passed and _touches_later(other, state))
-            return Course(tuple(_held(other.scale, brakings)) if to_the_end else (), touches)
+            return Course(tuple(_merged_looks(other.scale, brakings)) if to_the_end else (), touches)
         passed = passed or _passes(other, state, braking)
         touches = touches or (not passed and _touches(other, state, braking))
         if not (to_the_end or touches) and _stays_clear(other, state, controller):
@@ -134,16 +134,16 @@ def course_of(manoeuvre: m.Manoeuvre, values: m.Values, to_the_end: bool = True)
         time += count * TICKS
         gone += (count - 1) * TICKS * speed + moved(speed, braking)  # of several looks none brakes
         speed -= TICKS * braking
-    told = ", ".join(f"{name}={value}" for name, value in values.items())
+    text = ", ".join(f"{name}={value}" for name, value in values.items())
     raise InputError(
-        f"{told} (SI): SV's drive is not over after {_MOST_LOOKS} steps of the controller; "
+        f"{text} (SI): SV's drive is not over after {_MOST_LOOKS} steps of the controller; "
         "choose other values"
     )
 
 
 @dataclass(frozen=True)
 class _State:
-    """What there is at a look, in units."""
+    """The state at a look, in units."""
 
     time: int
     gap: int
@@ -152,7 +152,9 @@ class _State:
 
 
 def _is_over(other: _Other, now: _State, acts: bool) -> bool:
-    """Whether SV, which now ``acts`` or not, never brakes again: it stands, is past, or is no faster."""
+    """Return whether SV, which now ``acts`` or not, never brakes again: it stands, is past, or is no
+    faster.
+    """
     if now.speed == 0:
         return True
     if acts or now.time < other.begins:
@@ -163,7 +165,7 @@ def _is_over(other: _Other, now: _State, acts: bool) -> bool:
 
 
 def _stays_clear(other: _Other, now: _State, controller: Controller) -> bool:
-    """Whether SV surely brakes in time, should it ever come within the margin of the other.
+    """Return whether SV surely brakes in time, should it ever come within the margin of the other.
 
     The other keeps its speed, and SV is never faster than now. Where SV is faster and within the margin, it
     is nearer than what is unsafe, and brakes comfortably at least, as soon as it may.
@@ -174,7 +176,7 @@ def _stays_clear(other: _Other, now: _State, controller: Controller) -> bool:
 
 
 def _looks_without(other: _Other, now: _State, controller: Controller) -> int:
-    """For how many looks SV, which does not brake, is too far away to see danger; at least one."""
+    """Return for how many looks SV is too far away to see danger without braking; at least one."""
     if other.braking or now.speed <= now.its_speed or now.time < other.begins:
         return 1
     return max(
@@ -183,7 +185,7 @@ def _looks_without(other: _Other, now: _State, controller: Controller) -> int:
 
 
 def _touches(other: _Other, now: _State, braking: int) -> bool:
-    """Whether the boxes touch from this look to the next, both with them."""
+    """Return whether the boxes touch from this look to the next, both with them."""
     if now.gap > TICKS * now.speed:
         return False
     begin, end = max(Fraction(0), other.in_way - now.time), Fraction(TICKS)
@@ -199,7 +201,9 @@ def _touches(other: _Other, now: _State, braking: int) -> bool:
 
 
 def _passes(other: _Other, now: _State, braking: int) -> bool:
-    """Whether SV is past the other, which keeps its speed, before it is in the way, and by the next look."""
+    """Return whether SV is past the other, which keeps its speed, before it is in the way, and by the next
+    look.
+    """
     if now.time >= other.in_way:
         return False
     lasts = min(Fraction(TICKS), other.in_way - now.time)
@@ -220,7 +224,7 @@ class _GapCourse:
         return self.gap - self.closing * s + self.bend * s * s / 2
 
     def meets(self, begin: Fraction, end: Fraction, lengths: int) -> bool:
-        """Whether it is somewhere between touching the other's rear and touching its front."""
+        """Return whether it is somewhere between touching the other's rear and touching its front."""
         values = [self.at(begin), self.at(end)]
         if self.bend and begin < self.closing / self.bend < end:
             values.append(self.at(self.closing / self.bend))
@@ -228,7 +232,8 @@ class _GapCourse:
 
 
 def _touches_later(other: _Other, now: _State) -> bool:
-    """Whether the boxes touch once SV's speed does not change any more; SV has not passed the other so far.
+    """Return whether the boxes touch once SV's speed does not change any more; SV has not passed the other
+    so far.
 
     Where the other brakes, SV stands behind it, and the gap has been what it is to be.
     """
@@ -239,25 +244,25 @@ def _touches_later(other: _Other, now: _State) -> bool:
     return begin >= -other.lengths and (begin <= 0 or rate < 0)
 
 
-def _held(scale: Scale, brakings: list[tuple[int, int]]) -> Iterator[tuple[int, Fraction]]:
+def _merged_looks(scale: Scale, brakings: list[tuple[int, int]]) -> Iterator[tuple[int, Fraction]]:
     """Looks with equal brakings put together, in m/s^2."""
     for braking, same in groupby(brakings, key=lambda x: x[1]):
         yield sum(count for count, _ in same), scale.to_acceleration(braking)
 
 
-def places_of(plane: m.Plane) -> tuple[Fraction, ...]:
+def places_of(plane: manoeuvres.Plane) -> tuple[Fraction, ...]:
     """The places of each line that are looked at."""
-    return tuple(m.spread(*plane.along, PLACES))
+    return tuple(manoeuvres.spread(*plane.along, PLACES))
 
 
-def labels_of(plane: m.Plane) -> tuple[tuple[bool, ...], ...]:
-    """For each row, at which places the boxes touch; nowhere where a vehicle would go backwards."""
+def labels_of(plane: manoeuvres.Plane) -> tuple[tuple[bool, ...], ...]:
+    """Return for each row the places at which the boxes touch; none where a vehicle would reverse."""
     return tuple(tuple(_label(plane, row, place) for place in places_of(plane)) for row in plane.rows)
 
 
-def _label(plane: m.Plane, row: Fraction, place: Fraction) -> bool:
+def _label(plane: manoeuvres.Plane, row: Fraction, place: Fraction) -> bool:
     values = plane.values(row, place)
-    return m.is_possible(values) and course_of(plane.manoeuvre, values, False).touches
+    return manoeuvres.is_possible(values) and course_of(plane.manoeuvre, values, False).touches
 
 
 def spans_of(places: tuple[Fraction, ...], labels: tuple[bool, ...]) -> Iterator[tuple[Fraction, Fraction]]:
@@ -269,14 +274,14 @@ def spans_of(places: tuple[Fraction, ...], labels: tuple[bool, ...]) -> Iterator
 
 
 def beside_change(
-    plane: m.Plane, labels: tuple[tuple[bool, ...], ...], wanted: bool
+    plane: manoeuvres.Plane, labels: tuple[tuple[bool, ...], ...], label: bool
 ) -> Iterator[dict[str, Fraction]]:
     """Initial values of that label whose neighbour has the other, those of middle rows first; then any."""
     middle, places = (plane.across[0] + plane.across[1]) / 2, places_of(plane)
     rows = sorted(zip(plane.rows, labels, strict=True), key=lambda x: abs(x[0] - middle))
     for beside in (True, False):
-        for row, found in rows:
+        for row, spans in rows:
             for k, place in enumerate(places):
-                differs = any(x is not wanted for x in found[max(0, k - 1) : k + 2])
-                if found[k] is wanted and differs is beside:
+                differs = any(x is not label for x in spans[max(0, k - 1) : k + 2])
+                if spans[k] is label and differs is beside:
                     yield plane.values(row, place)

@@ -1,11 +1,10 @@
-"""What an answer has on a test in which a driver model drives SV."""
+"""The verdict on a driver model in a test, as answers store it."""
 
 from collections.abc import Mapping
 from typing import Annotated, TypeAlias
 
 from roadproof.evidence.codec import Doc, Rule
 from roadproof.evidence.subject import TestedSide
-from roadproof.extensions.drivers.models import ModelName
 from roadproof.runtime.records import dataclass
 
 Time: TypeAlias = Annotated[float, Rule(minimum=0)]
@@ -13,11 +12,11 @@ Time: TypeAlias = Annotated[float, Rule(minimum=0)]
 
 @dataclass(frozen=True, kw_only=True)
 class DriverVerdict:
-    """What becomes of a scenario that a test shows, under a driver model."""
+    """The outcome of a scenario of a test in which a driver model drives SV."""
 
     scenario: Annotated[str, Rule(least=1), Doc("The definition of a scenario.")]
     vehicles: Annotated[tuple[str, ...], Doc("In the order of the roles.")]
-    driver: ModelName
+    driver: Annotated[str, Rule(least=1), Doc("The driver model.")]
     side: TestedSide
     at: Annotated[Time | None, Doc("When the manoeuvre begins, in s; null where it never does.")]
     gap: Annotated[float | None, Doc("The least gap that SV leaves, in m; null where it touches POV.")]

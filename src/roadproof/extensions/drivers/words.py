@@ -3,17 +3,12 @@
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
-from roadproof.extensions.drivers.manoeuvres import Quantity
+from roadproof.extensions.drivers.manoeuvres import InitialQuantity
+from roadproof.extensions.drivers.models import MODELS
 from roadproof.logic.formula import Application, Formula, children
 from roadproof.logic.rewrite import vehicles_of
 
-_CAREFUL, _R157, _EU1426, _RSS, _FSM = (
-    "{a}, driven as the careful driver,",
-    "{a}, which does what UN R157 supposes,",
-    "{a}, which does what EU 2022/1426 supposes,",
-    "{a}, which responds as RSS asks,",
-    "{a}, driven by the fuzzy safety model,",
-)
+_CAREFUL, _RSS = MODELS["careful"].phrase, MODELS["rss"].phrase
 _SIDE = "cannot prevent a collision with {b} from this side"
 _PARTS: Mapping[str, str] = MappingProxyType(
     {
@@ -27,14 +22,11 @@ _PARTS: Mapping[str, str] = MappingProxyType(
         "stillFaster": "{a} is still faster than {b} when {b} is in its way",
         "gains": "{a} gains more than the gap on {b}",
         "gainsByRamp": "{a} gains more than the gap on {b} while its brakes build up",
-        "careful_in": f"{_CAREFUL} {_SIDE}",
+        **{f"{x.name}_in": f"{x.phrase} {_SIDE}" for x in MODELS.values() if x.law is not None},
         "careful_hits": f"{_CAREFUL} hits {{b}}",
         "careful_gated": f"{_CAREFUL} hits {{b}}, braking by time to collision",
         "careful_aided": f"{_CAREFUL} hits {{b}} in spite of AEB, or has none",
         "careful_out": f"{_CAREFUL} hits the vehicle that the cut-out reveals",
-        "r157_in": f"{_R157} {_SIDE}",
-        "eu1426_in": f"{_EU1426} {_SIDE}",
-        "rss_in": f"{_RSS} {_SIDE}",
         "rss_hits": f"{_RSS} hits {{b}}",
         "rss_gains": f"{_RSS} gains more than the gap on {{b}}",
         "careful_drives": "{a} moves as the careful driver drives it while {b} cuts in",
@@ -54,17 +46,16 @@ _PARTS: Mapping[str, str] = MappingProxyType(
         "brakesTooHard": "{a}, driven as the careful driver, hits {b}, which begins to brake in this state",
     }
 )
-_ENDINGS = {"careful": _CAREFUL, "r157": _R157, "eu1426": _EU1426, "rss": _RSS, "fsm": _FSM}
 _BEGINNINGS = {"unpreventable": "cannot prevent a collision", "follows": "moves as the model says"}
 
 
 def words_of_parts(formula: Formula) -> dict[Application, str]:
-    """What parts of driver models say of their vehicles, with their names; other parts are left out.
+    """Return a phrase with the vehicles' names for each part of a driver model in a formula.
 
     The arguments of many are numbers, so the vehicles are those of the nearest part around it that names two.
     """
     vehicles = {*vehicles_of(formula)}
-    found: dict[Application, str] = {}
+    phrases: dict[Application, str] = {}
     seen: set[Formula] = set()
     left: list[tuple[Formula, tuple[str, ...]]] = [(formula, ())]
     while left:
@@ -76,21 +67,21 @@ def words_of_parts(formula: Formula) -> dict[Application, str]:
             own = tuple(x for x in part.arguments if x in vehicles)
             around = own if len(own) > 1 else around
             words = _words(part.name.partition("@")[0], around)
-            found |= {part: words} if words else {}
+            phrases |= {part: words} if words else {}
         left += [(x, around) for x in children(part)]
-    return found
+    return phrases
 
 
 def _words(name: str, vehicles: tuple[str, ...]) -> str:
     begin, _, rest = name.partition("_")
     words = _PARTS.get(name, "")
-    if begin in _BEGINNINGS and (ending := rest.rpartition("_")[2]) in _ENDINGS:
-        words = f"{_ENDINGS[ending]} {_BEGINNINGS[begin]}"
+    if begin in _BEGINNINGS and (model := rest.rpartition("_")[2]) in MODELS:
+        words = f"{MODELS[model].phrase} {_BEGINNINGS[begin]}"
     if not words or len(vehicles) < 2:
         return ""
     return f"{words.format(a=vehicles[0], b=vehicles[-1])} ({name})"
 
 
-def legend(quantities: Iterable[Quantity]) -> str:
-    """What the symbols of initial values mean, with their units."""
+def legend(quantities: Iterable[InitialQuantity]) -> str:
+    """Return the meaning of the symbols of initial values, with units."""
     return "; ".join(f"{x.name}: {x.doc} ({x.unit})" for x in quantities)

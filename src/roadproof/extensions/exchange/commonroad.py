@@ -16,11 +16,12 @@ from roadproof.extensions.exchange.commonroad_obstacles import Obstacle, Obstacl
 from roadproof.extensions.maps.commonroad import lanelets_of
 from roadproof.extensions.maps.harmless import COMMONROAD
 from roadproof.extensions.maps.network import ZONES_ENDING
+from roadproof.extensions.maps.xml_reader import Element, number_in, parts_not_read, read_xml, summary_of
 from roadproof.extensions.traffic.formats.clock import LARGEST_RATE, LONGEST_STEP, Rate, rate_near, samples_in
 from roadproof.extensions.traffic.formats.lanelets import network_of
 from roadproof.extensions.traffic.formats.measured_roads import MeasuredTraffic, place_traffic
-from roadproof.extensions.traffic.formats.neighbours import describe_overlaps
 from roadproof.extensions.traffic.formats.off_line import follows_line, leave_out_strays
+from roadproof.extensions.traffic.formats.overlaps import describe_overlaps
 from roadproof.extensions.traffic.formats.plausible import SHARE, ContradictionChecks
 from roadproof.extensions.traffic.formats.recording import (
     Bools,
@@ -30,12 +31,10 @@ from roadproof.extensions.traffic.formats.recording import (
     offsets,
     with_notes,
 )
-from roadproof.extensions.traffic.formats.reliable import contradicts_motion, named, reliable
+from roadproof.extensions.traffic.formats.reliable import contradicts_motion, first_names, reliable_part
 from roadproof.extensions.traffic.formats.repeats import moments_of
 from roadproof.extensions.traffic.formats.source import Format, find_files
-from roadproof.runtime.xml_reader import Element, number_in, read_xml, summary_of
-from roadproof.runtime.xml_reader import unread as unread_parts
-from roadproof.world.unread import unread_note
+from roadproof.world.not_read import not_read_note
 
 
 def read_commonroad(path: Path, strict: bool = True, truck_length: float = 7.0) -> Recording:
@@ -50,24 +49,24 @@ def read_commonroad(path: Path, strict: bool = True, truck_length: float = 7.0) 
     """
     root = read_xml(path, "commonRoad")
     if root.get("commonRoadVersion") != "2020a":
-        told = f"commonRoadVersion={root.get('commonRoadVersion')}"
-        raise InputError(f"{path}: {told}: commonRoad of version 2020a is needed")
+        problem = f"commonRoadVersion={root.get('commonRoadVersion')}"
+        raise InputError(f"{path}: {problem}: commonRoad of version 2020a is needed")
     step = number_in(path, root.get("timeStepSize"), "timeStepSize of commonRoad")
     if not 1 / LARGEST_RATE <= step <= LONGEST_STEP:
-        told = f"a step lies between {1 / LARGEST_RATE:g} and {LONGEST_STEP} s"
-        raise InputError(f"{path}: timeStepSize={step}: {told}")
+        problem = f"a step lies between {1 / LARGEST_RATE:g} and {LONGEST_STEP} s"
+        raise InputError(f"{path}: timeStepSize={step}: {problem}")
     rate = rate_near(step)
     network = network_of(path, lanelets_of(path, root), strict)
     obstacles, notes = read_obstacles(path, root, ObstacleRules(rate, truck_length, strict))
-    unread = unread_note(path, summary_of(unread_parts(root, COMMONROAD)), strict)
-    traffic = _traffic(path.stem, rate, obstacles, (*notes, *unread))
-    if _is_made(root):
+    omissions = not_read_note(path, summary_of(parts_not_read(root, COMMONROAD)), strict)
+    traffic = _traffic(path.stem, rate, obstacles, (*notes, *omissions))
+    if _is_synthetic(root):
         traffic = replace(traffic, moments=np.zeros_like(traffic.moments))
     whole = place_traffic(traffic, network)
-    strays = _moves_as_told(traffic) & ~follows_line(traffic.centre, whole)
+    strays = _motion_matches_velocity(traffic) & ~follows_line(traffic.centre, whole)
     fitting = leave_out_strays(whole, ~strays, strict)
-    recording = reliable(fitting, strict, partial(_check_plausible, path, fitting))
-    return with_notes(recording, (*_say_consistent(traffic, whole, recording), *_describe(recording)))
+    recording = reliable_part(fitting, strict, partial(_contradiction_notes, path, fitting))
+    return with_notes(recording, (*_consistent_motion_note(traffic, whole, recording), *_describe(recording)))
 
 
 def subject_of_problem(path: Path) -> str:
@@ -79,62 +78,63 @@ def subject_of_problem(path: Path) -> str:
     problems = root.findall("planningProblem/initialState")
     if len(problems) != 1:
         return ""
-    begin = _begin_of(problems[0])
-    beginning = [
+    start = _initial_values(problems[0])
+    candidates = [
         node.get("id", "")
         for node in root.findall("dynamicObstacle")
-        if begin is not None and _near(begin, _begin_of(node.find("initialState")))
+        if start is not None and _are_close(start, _initial_values(node.find("initialState")))
     ]
-    return beginning[0] if len(beginning) == 1 else ""
+    return candidates[0] if len(candidates) == 1 else ""
 
 
-_BEGIN = ("time/exact", "position/point/x", "position/point/y", "velocity/exact")
+_INITIAL_VALUES = ("time/exact", "position/point/x", "position/point/y", "velocity/exact")
 
 
-def _begin_of(node: Element | None) -> tuple[float, ...] | None:
+def _initial_values(node: Element | None) -> tuple[float, ...] | None:
     """Time, place and speed of an initial state, where it has exact ones."""
     try:
-        return None if node is None else tuple(float(node.findtext(x) or "") for x in _BEGIN)
+        return None if node is None else tuple(float(node.findtext(x) or "") for x in _INITIAL_VALUES)
     except ValueError:
         return None
 
 
-def _near(one: tuple[float, ...], other: tuple[float, ...] | None) -> bool:
+def _are_close(one: tuple[float, ...], other: tuple[float, ...] | None) -> bool:
     return other is not None and all(abs(a - b) < 0.01 for a, b in zip(one, other, strict=True))
 
 
-def _say_consistent(traffic: MeasuredTraffic, whole: Recording, part: Recording) -> Iterator[str]:
+def _consistent_motion_note(traffic: MeasuredTraffic, whole: Recording, part: Recording) -> Iterator[str]:
     """A note on vehicles that were left out for the reference line, as they move as their velocities say."""
     lost = ~np.isin(whole.vehicle_id, part.vehicle_id)
     if lost.any():
-        lost &= _moves_as_told(traffic)
+        lost &= _motion_matches_velocity(traffic)
     ids = [int(whole.vehicle_id[v]) for v in np.flatnonzero(lost) if contradicts_motion(whole, int(v))]
     if ids:
         yield (
-            f"of the vehicles left out, {len(ids)} ({named(ids)}) move in the plane as their velocities say: "
+            f"of the vehicles left out, {len(ids)} ({first_names(ids)}) "
+            "move in the plane as their velocities say: "
             "the reference line of the road does not follow their way"
         )
 
 
-def _moves_as_told(traffic: MeasuredTraffic) -> Bools:
-    """For each vehicle whether it moves in the plane as its velocities say, in nine seconds of ten."""
-    found = np.ones(len(traffic.vehicle_id), np.bool_)
+def _motion_matches_velocity(traffic: MeasuredTraffic) -> Bools:
+    """Return for each vehicle whether it moves as its velocities say, in nine seconds of ten."""
+    matches = np.ones(len(traffic.vehicle_id), np.bool_)
     speed = np.hypot(*traffic.velocity.T)
     for v, (begin, end) in enumerate(pairwise(traffic.start.tolist())):
         way = np.hypot(*np.diff(traffic.centre[begin:end], axis=0).T)
-        told = (speed[begin : end - 1] + speed[begin + 1 : end]) / 2 / float(traffic.rate)
+        expected = (speed[begin : end - 1] + speed[begin + 1 : end]) / 2 / float(traffic.rate)
         seconds = np.ones(min(samples_in(traffic.rate), len(way)))
         if not len(seconds):
             continue
-        one, other = np.convolve(way, seconds, "valid"), np.convolve(told, seconds, "valid")
+        one, other = np.convolve(way, seconds, "valid"), np.convolve(expected, seconds, "valid")
         greater = np.maximum(one, other)
         wrong = (greater > 1) & (np.abs(one - other) > SHARE * greater + 0.2)
-        found[v] = np.count_nonzero(wrong) <= SHARE * len(wrong)
-    return found
+        matches[v] = np.count_nonzero(wrong) <= SHARE * len(wrong)
+    return matches
 
 
-def _is_made(root: Element) -> bool:
-    """Whether the traffic was made and not recorded: ZAM stands for no country in a benchmark's name.
+def _is_synthetic(root: Element) -> bool:
+    """Return whether the traffic was made and not recorded: ZAM stands for no country in a benchmark's name.
 
     Then no file is a window of what another shows.
     """
@@ -163,15 +163,15 @@ def _traffic(name: str, rate: Rate, obstacles: Sequence[Obstacle], notes: tuple[
         centre=states[:, :2],
         heading=heading,
         velocity=speed[:, None] * forward + drift[:, None] * aside,
-        acceleration=pull[:, None] * forward + _change(drift, start, rate)[:, None] * aside,
+        acceleration=pull[:, None] * forward + _rate_of_drift(drift, start, rate)[:, None] * aside,
         acceleration_turns=False,
         notes=notes,
         moments=moments_of(np.column_stack((speed, pull, sizes)), start),
     )
 
 
-def _change(drift: Floats, start: Integers, rate: Rate) -> Floats:
-    """What velocityY changes by in a second, from each sample to the next; the last one is as the one before.
+def _rate_of_drift(drift: Floats, start: Integers, rate: Rate) -> Floats:
+    """Return the change of velocityY in a second from each sample to the next, the last one repeated.
 
     States have no acceleration across the box.
     """
@@ -181,19 +181,23 @@ def _change(drift: Floats, start: Integers, rate: Rate) -> Floats:
     return step
 
 
-def _check_plausible(
+def _contradiction_notes(
     path: Path, whole: Recording, checks: ContradictionChecks, rows: Integers
 ) -> Iterator[str]:
     """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
     ids, frames = whole.vehicle_id[whole.row_vehicle][rows], whole.row_frame[rows]
-    found = [(f"{ids[x.row]}, time step {frames[x.row]}: {x.told}", x.refused) for x in checks.doubts()]
+    contradictions = [
+        (f"{ids[x.row]}, time step {frames[x.row]}: {x.text}", x.refused) for x in checks.contradictions()
+    ]
     off = checks.off_road()
     if off is not None:
-        found.append((f"{ids[off.row]}: on no lanelet at any time, like {off.count} obstacles", off.refused))
-    for told, refused in found:
+        contradictions.append(
+            (f"{ids[off.row]}: on no lanelet at any time, like {off.count} obstacles", off.refused)
+        )
+    for message, refused in contradictions:
         if refused:
-            raise InputError(f"{path}: dynamicObstacle {told}")
-        yield f"dynamicObstacle {told}"
+            raise InputError(f"{path}: dynamicObstacle {message}")
+        yield f"dynamicObstacle {message}"
 
 
 def _describe(recording: Recording) -> Iterator[str]:

@@ -15,14 +15,19 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.extensions.maps.xml_element import text_of
+from roadproof.extensions.maps.xml_reader import Element, number_in
 from roadproof.extensions.traffic.formats.clock import Rate
 from roadproof.extensions.traffic.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED
 from roadproof.extensions.traffic.formats.recording import Floats
-from roadproof.extensions.traffic.formats.reliable import MOST_LEFT_OUT, left_out_note, named, rate_of_change
-from roadproof.reasons import Why
-from roadproof.runtime.xml_element import text_of
-from roadproof.runtime.xml_reader import Element, number_in
-from roadproof.world.unread import LEFT_OUT
+from roadproof.extensions.traffic.formats.reliable import (
+    MOST_LEFT_OUT,
+    first_names,
+    left_out_note,
+    rate_of_change,
+)
+from roadproof.reasons import ReasonKind
+from roadproof.world.not_read import LEFT_OUT
 
 LARGEST_PLACE, LARGEST_ORIENTATION = 1e8, 100.0
 """m, as in all coordinates of maps, and rad, which need not be one turn."""
@@ -36,7 +41,7 @@ _STATE = {
     "velocityY": ("velocityY", LARGEST_SPEED),
 }
 """What a state has, where, and how large it is at most; ``velocityY`` may be missing."""
-_IMPLIED = ("orientation", "velocity", "acceleration")
+_DERIVABLE = ("orientation", "velocity", "acceleration")
 """What the other values of a trajectory imply, in the order in which it is computed."""
 NO_TRAFFIC = {
     "pedestrian": "pedestrians",
@@ -58,7 +63,7 @@ STANDS = 0.1
 class Obstacle:
     """Columns of ``states``: x, y (centre of the box), orientation, velocity, acceleration, velocityY.
 
-    Velocity and acceleration are along the box, velocityY to its left. ``implied``: what was computed.
+    Velocity and acceleration are along the box, velocityY to its left. ``derived``: what was computed.
     """
 
     id: int
@@ -68,12 +73,14 @@ class Obstacle:
     width: float
     first_step: int
     states: Floats
-    implied: tuple[str, ...] = ()
+    derived: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class ObstacleRules:
-    """How obstacles are read: the ``rate`` (1/s) of states, from which length on (m) they are trucks."""
+    """The settings for obstacles: the ``rate`` (1/s) of states, and the length (m) from which they are
+    trucks.
+    """
 
     rate: Rate
     truck_length: float
@@ -116,15 +123,15 @@ def read_obstacles(path: Path, root: Element, rules: ObstacleRules) -> tuple[lis
         node.read_all()
     if static:
         notes.append(f"{LEFT_OUT} {len(static)} static obstacles: they are no traffic")
-    notes += [left_out_note(ids, len(nodes), Why.OF_KIND(what)) for what, ids in absent.items()]
-    notes += [left_out_note([number], len(nodes), Why.TOLD(told)) for number, told in faults.items()]
-    return sorted(obstacles, key=lambda o: o.id), (*notes, *_say_implied(obstacles))
+    notes += [left_out_note(ids, len(nodes), ReasonKind.OF_KIND(what)) for what, ids in absent.items()]
+    notes += [left_out_note([number], len(nodes), ReasonKind.TOLD(fault)) for number, fault in faults.items()]
+    return sorted(obstacles, key=lambda o: o.id), (*notes, *_derived_value_notes(obstacles))
 
 
-def _say_implied(obstacles: Sequence[Obstacle]) -> Iterator[str]:
-    for what in dict.fromkeys(x for obstacle in obstacles for x in obstacle.implied):
-        ids = [x.id for x in obstacles if what in x.implied]
-        yield f"{what} of {len(ids)} of {len(obstacles)} vehicles ({named(ids)})"
+def _derived_value_notes(obstacles: Sequence[Obstacle]) -> Iterator[str]:
+    for what in dict.fromkeys(x for obstacle in obstacles for x in obstacle.derived):
+        ids = [x.id for x in obstacles if what in x.derived]
+        yield f"{what} of {len(ids)} of {len(obstacles)} vehicles ({first_names(ids)})"
 
 
 def _read_obstacle(path: Path, node: Element, number: int, rules: ObstacleRules) -> Obstacle:
@@ -133,36 +140,38 @@ def _read_obstacle(path: Path, node: Element, number: int, rules: ObstacleRules)
         number_in(path, node.findtext(f"shape/rectangle/{x}"), f"{x} of {where}") for x in ("length", "width")
     )
     if length <= 0 or width <= 0:
-        told = f"{where} has length={length}, width={width}"
-        raise InputError(f"{path}: {told}; both must be greater than zero")
+        description = f"{where} has length={length}, width={width}"
+        raise InputError(f"{path}: {description}; both must be greater than zero")
     if max(length, width) > LARGEST_SIZE:
-        told = f"{where} has length={length:g}, width={width:g}"
-        raise InputError(f"{path}: {told}; no vehicle is larger than {LARGEST_SIZE:g} m")
+        description = f"{where} has length={length:g}, width={width:g}"
+        raise InputError(f"{path}: {description}; no vehicle is larger than {LARGEST_SIZE:g} m")
     nodes = (*node.findall("initialState"), *node.findall("trajectory/state"))
     reader = _StateReader(path, where, rules.strict)
     states = np.array([reader.read(x) for x in nodes])
-    implied = reader.implied
+    derived = reader.derived
     if not rules.strict:
-        states, more = _completed(path, states, rules.rate, where)
-        implied = (*implied, *more)
-    states[:, 1:3] += _middle(path, node, states[:, 3], where)
+        states, more = _complete_states(path, states, rules.rate, where)
+        derived = (*derived, *more)
+    states[:, 1:3] += _box_offset(path, node, states[:, 3], where)
     if (np.diff(states[:, 0]) != 1).any():
         k = int(np.argmax(np.diff(states[:, 0]) != 1))
         steps = f"{states[k, 0]:g} is followed by {states[k + 1, 0]:g}"
         raise InputError(f"{path}: {where}: time step {steps}; the steps of a trajectory have no gaps")
     label = (node.findtext("type") or "").strip()
     kind = "Truck" if label in ("truck", "bus") or length > rules.truck_length else "Car"
-    told = kind if label == "car" else label
-    return Obstacle(number, kind, told, length, width, int(states[0, 0]), states[:, 1:], implied)
+    description = kind if label == "car" else label
+    return Obstacle(number, kind, description, length, width, int(states[0, 0]), states[:, 1:], derived)
 
 
-def _middle(path: Path, node: Element, heading: Floats, where: str) -> Floats:
-    """How far (m) the middle of the box is from the position, whose frame is turned by ``heading`` (rad)."""
+def _box_offset(path: Path, node: Element, heading: Floats, where: str) -> Floats:
+    """Return how far (m) the middle of the box is from the position, whose frame is turned by ``heading``
+    (rad).
+    """
     box = "shape/rectangle"
     turned = node.find(f"{box}/orientation")
     if turned is not None and number_in(path, turned.text, f"orientation of the rectangle of {where}") != 0:
-        told = f"orientation={turned.text} of the rectangle of {where}"
-        raise InputError(f"{path}: {told}: 0 is needed; boxes lie along their obstacle")
+        problem = f"orientation={turned.text} of the rectangle of {where}"
+        raise InputError(f"{path}: {problem}: 0 is needed; boxes lie along their obstacle")
     if node.find(f"{box}/center") is None:
         return np.zeros((len(heading), 2))
     ahead, left = (
@@ -178,7 +187,7 @@ class _StateReader:
 
     def __init__(self, path: Path, where: str, strict: bool) -> None:
         self.path, self.where, self.strict = path, where, strict
-        self.implied: tuple[str, ...] = ()
+        self.derived: tuple[str, ...] = ()
 
     def read(self, node: Element) -> list[float]:
         aside = node.find("velocityY") is not None
@@ -195,12 +204,12 @@ class _StateReader:
     def _value(self, node: Element, what: str) -> float:
         place = _STATE[what][0]
         value = node.find(place)
-        if not self.strict and value is None and what in _IMPLIED:
+        if not self.strict and value is None and what in _DERIVABLE:
             return math.nan
         if value is not None and "point" not in place:
             ends = [value.findtext(x) for x in ("intervalStart", "intervalEnd")]
             if not self.strict and None not in ends:
-                self.implied = tuple(dict.fromkeys((*self.implied, f"the middle of an interval is {what}")))
+                self.derived = tuple(dict.fromkeys((*self.derived, f"the middle of an interval is {what}")))
                 return sum(number_in(self.path, x, f"{what} in a state of {self.where}") for x in ends) / 2
             value = value.find("exact")
         text = None if value is None else value.text
@@ -208,47 +217,53 @@ class _StateReader:
 
 
 def _is_zero(node: Element) -> bool:
-    """Whether the exact value of a node is 0, without counting it as read."""
+    """Return whether the exact value of a node is 0, without counting it as read."""
     texts = [text_of(x) for x in node if x.tag == "exact"]
     with suppress(TypeError, ValueError):
         return len(texts) == 1 and float(texts[0] or "") == 0
     return False
 
 
-def _completed(path: Path, states: Floats, rate: Rate, where: str) -> tuple[Floats, tuple[str, ...]]:
+def _complete_states(path: Path, states: Floats, rate: Rate, where: str) -> tuple[Floats, tuple[str, ...]]:
     """States with a first one that is said once, and with what their places and velocities imply."""
     if len(states) > 1 and states[0, 0] == states[1, 0]:
         states = states[1:]
-    told = []
+    notes = []
     x, y, heading, velocity, acceleration = (states[:, k] for k in range(1, 6))
     if np.isnan(heading).any():
         heading[:] = np.where(np.isnan(heading), _headings(path, x, y, where), heading)
-        told.append("the motion implies orientation")
+        notes.append("the motion implies orientation")
     along = rate_of_change(x, rate) * np.cos(heading) + rate_of_change(y, rate) * np.sin(heading)
     if np.isnan(velocity).any():
         velocity[:] = np.where(np.isnan(velocity), along, velocity)
-        told.append("the motion implies velocity")
-    elif _is_unsigned(along, velocity, rate):
+        notes.append("the motion implies velocity")
+    elif _drives_backwards(along, velocity, rate):
         velocity *= -1
-        told.append("the motion is backwards, against an unsigned velocity,")
+        notes.append("the motion is backwards, against an unsigned velocity,")
     if np.isnan(acceleration).any():
         acceleration[:] = np.where(np.isnan(acceleration), rate_of_change(velocity, rate), acceleration)
-        told.append("velocities imply acceleration")
-    return states, tuple(told)
+        notes.append("velocities imply acceleration")
+    return states, tuple(notes)
 
 
-def _is_unsigned(along: Floats, velocity: Floats, rate: Rate) -> bool:
-    """Whether a vehicle drives backwards all the time, as fast as velocities say that it drives forwards."""
-    moved, told = float(along.sum()) / float(rate), float(velocity.sum()) / float(rate)
-    return told > 1 and bool((velocity >= 0).all()) and abs(moved + told) < 0.1 * told
+def _drives_backwards(along: Floats, velocity: Floats, rate: Rate) -> bool:
+    """Return whether a vehicle drives backwards all the time, as fast as velocities say that it drives
+    forwards.
+    """
+    moved_distance, stated_distance = float(along.sum()) / float(rate), float(velocity.sum()) / float(rate)
+    return (
+        stated_distance > 1
+        and bool((velocity >= 0).all())
+        and abs(moved_distance + stated_distance) < 0.1 * stated_distance
+    )
 
 
 def _headings(path: Path, x: Floats, y: Floats, where: str) -> Floats:
-    """Where a vehicle heads by its motion; where it stands, as before, and at first as later."""
+    """Return where a vehicle heads by its motion; where it stands, as before, and at first as later."""
     step = np.stack((np.gradient(x), np.gradient(y))) if len(x) > 1 else np.zeros((2, len(x)))
     moving = np.flatnonzero(np.hypot(*step) > STANDS)
     if not len(moving):
         raise InputError(f"{path}: {where} has no orientation, and no motion that says it")
     latest = np.maximum(np.searchsorted(moving, np.arange(len(x)), side="right") - 1, 0)
-    found: Floats = np.arctan2(step[1], step[0])[moving[latest]]
-    return found
+    headings: Floats = np.arctan2(step[1], step[0])[moving[latest]]
+    return headings

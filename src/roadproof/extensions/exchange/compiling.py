@@ -1,11 +1,16 @@
-"""Formulas as monitors that run elsewhere: C99 that takes one sample at a time."""
+"""Formulas for other programs: monitors in C99, and problems of searches for other solvers."""
+
+from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import Literal, TypeAlias, Unpack
 
 from roadproof.errors import UsageError
+from roadproof.extensions.encoding import kinds
+from roadproof.extensions.encoding.files import CompiledProblems, compile_problems, write_problems
 from roadproof.extensions.exchange.keywords import CompileKeywords
 from roadproof.extensions.exchange.settings import Compile
 from roadproof.extensions.exchange.streaming.c_files import FLAGS, CSource, compile_c
@@ -17,14 +22,21 @@ from roadproof.frontends.report.sheet import aligned
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import bind, refuse_variables
 from roadproof.library.scenarios import name_of
-from roadproof.library.specification import Query, unknown
+from roadproof.library.specification import Query, unknown_name
 from roadproof.logic.formula import Application, Formula
 from roadproof.logic.rewrite import with_values
-from roadproof.runtime.files import hold_folder, write_whole
+from roadproof.runtime.files import lock_folder, write_atomic
 from roadproof.runtime.records import dataclass
 from roadproof.world.road import Road
 
-Target: TypeAlias = Literal["c"]
+Target: TypeAlias = Literal["c"] | kinds.Target
+
+
+TARGETS: tuple[Target, ...] = ("c", *kinds.TARGETS)
+OF_MONITORS = ("memory", "name")
+OF_PROBLEMS = ("vehicles", "horizon", "reach", "collisions", "drives")
+"""Options that only some targets have."""
+STEP = Fraction(1, 25)  # s, of the samples of monitors
 
 
 @dataclass(frozen=True, repr=False)
@@ -47,9 +59,9 @@ class CompiledMonitors(Table):
         """A row for each formula: the step function, what verdicts are about, delay (s), memory (bytes)."""
         return [
             {
-                "function": f"{x.label}_step",
+                "function": f"{x.identifier}_step",
                 "formula": x.told,
-                "about": _about(x),
+                "about": _verdict_subject(x),
                 "delay": float(x.plan.delay * self.source.dt),
                 "memory": x.memory,
             }
@@ -59,7 +71,12 @@ class CompiledMonitors(Table):
     def __str__(self) -> str:
         head = ("function", "verdicts about", "delay", "memory")
         body = [
-            (f"{x.label}_step", _about(x), f"{float(x.plan.delay * self.source.dt):g} s", f"{x.memory} bytes")
+            (
+                f"{x.identifier}_step",
+                _verdict_subject(x),
+                f"{float(x.plan.delay * self.source.dt):g} s",
+                f"{x.memory} bytes",
+            )
             for x in self.source.monitors
         ]
         lines = aligned([head, *body], [False, False, False, False])
@@ -69,11 +86,11 @@ class CompiledMonitors(Table):
         return "\n".join(line.rstrip() for line in lines)
 
     def __repr__(self) -> str:
-        return f"<Monitors in C: {', '.join(x.label for x in self.source.monitors)}>"
+        return f"<Monitors in C: {', '.join(x.identifier for x in self.source.monitors)}>"
 
 
-def _about(monitor: StreamMonitor) -> str:
-    """What the verdicts of a monitor are about."""
+def _verdict_subject(monitor: StreamMonitor) -> str:
+    """Return the subject of a monitor's verdicts, in words."""
     return "the first sample" if monitor.plan.at_start else "each sample"
 
 
@@ -84,45 +101,74 @@ def compile(
     out: str | Path | None = None,
     using: Definitions | None = None,
     **options: Unpack[CompileKeywords],
-) -> CompiledMonitors:
-    """Monitors in C99 for scenarios or formulas: functions that take one sample and return a verdict.
+) -> CompiledMonitors | CompiledProblems:
+    """Scenarios or formulas for other programs, in the folder ``out``.
 
-    ``dt``: seconds between samples. Relations to lanes are flags of the sample; with ``road`` and ``lanes``
-    they are computed from positions on that road. ``name``: of the two files, which go to the folder
-    ``out``. ``memory``: how many bytes the state of a monitor may take. Raises ``InputError`` for formulas
-    that need more, ``TextError``, ``UsageError``.
+    ``to`` c: monitors in C99, functions that take one sample and return a verdict. ``dt``: seconds between
+    samples. Relations to lanes are flags of the sample; with ``road`` and ``lanes`` they are computed from
+    positions on that road. ``name``: of the two files. ``memory``: how many bytes the state of a monitor may
+    take. ``to`` mps, lp, smt2: the problem that a search for drives solves, a file for each assignment of
+    lanes, with a table of its rows; see ``encode``. Raises ``InputError`` for formulas that need more memory,
+    ``TextError``, ``UsageError``.
     """
-    given, home = Compile.of(options), definitions_of(using)
-    if to != "c":
-        raise UsageError(unknown("target", to, ("c",)))
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,40}", given.name):
-        raise UsageError(f"name={given.name}: write letters, digits and _, and a letter first")
-    if given.lanes and given.road is None:
-        raise UsageError("lanes: the lanes of which road? Name it, or leave lanes to the flags of samples")
-    road = None if given.road is None else as_road(given.road, given.strict)
-    each = [what] if isinstance(what, int | str) or not isinstance(what, Iterable) else what
-    formulas: dict[str, tuple[str, Formula]] = {}
-    for k, x in enumerate(home.each(each), 1):
+    settings, home = Compile.of(options), definitions_of(using)
+    if to not in TARGETS:
+        raise UsageError(unknown_name("target", to, TARGETS))
+    _refuse_options(settings, OF_PROBLEMS if to == "c" else OF_MONITORS, to)
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,40}", settings.name):
+        raise UsageError(f"name={settings.name}: write letters, digits and _, and a letter first")
+    queries = [what] if isinstance(what, int | str) or not isinstance(what, Iterable) else what
+    named = _named(home, queries)
+    if to == "c":
+        return _compile_monitors(home, named, settings, None if out is None else Path(out))
+    problems = compile_problems(home, named, to, settings, settings.drives)
+    return problems if out is None else write_problems(problems, Path(out))
+
+
+def _refuse_options(settings: Compile, names: Iterable[str], to: Target) -> None:
+    """Raises ``UsageError`` for an option that another target has, and that this one would ignore."""
+    for name in names:
+        value = getattr(settings, name)
+        if value != getattr(Compile, name):
+            others = "mps, lp or smt2" if to == "c" else "c"
+            raise UsageError(f"{name}={value}: to={to} has no such option; it is one of to={others}")
+
+
+def _named(home: Definitions, queries: Iterable[What]) -> dict[str, What]:
+    """Return formulas by the beginning of their names."""
+    named: dict[str, What] = {}
+    for k, x in enumerate(home.each(queries), 1):
         number, query = home.numbered(x)
-        label = _free(_label(number, query, k), formulas)
-        formulas[label] = query.text, _with_values(query, home, given, road)
-    source = compile_c(formulas, positive("dt", given.dt, "s"), given.name, given.memory)
+        named[_unused_identifier(_identifier(number, query, k), named)] = x
+    return named
+
+
+def _compile_monitors(
+    home: Definitions, named: Mapping[str, What], settings: Compile, out: Path | None
+) -> CompiledMonitors:
+    if settings.lanes and settings.road is None:
+        raise UsageError("lanes: the lanes of which road? Name it, or leave lanes to the flags of samples")
+    road = None if settings.road is None else as_road(settings.road, settings.strict)
+    read = {name: home.numbered(x)[1] for name, x in named.items()}
+    formulas = {name: (x.text, _with_values(x, home, settings, road)) for name, x in read.items()}
+    dt = positive("dt", STEP if settings.dt is None else settings.dt, "s")
+    source = compile_c(formulas, dt, settings.name, settings.memory)
     if out is None:
         return CompiledMonitors(source, road=road)
-    with hold_folder(Path(out)):
+    with lock_folder(out):
         for name, text in source.files.items():
-            write_whole(Path(out) / name, text.encode())
-    return CompiledMonitors(source, Path(out), road)
+            write_atomic(out / name, text.encode())
+    return CompiledMonitors(source, out, road)
 
 
-def _with_values(query: Query, home: Definitions, given: Compile, road: Road | None) -> Formula:
+def _with_values(query: Query, home: Definitions, settings: Compile, road: Road | None) -> Formula:
     if road is not None:
-        return bind(query.formula, road, dict(given.lanes or {}), home.all_values())
+        return bind(query.formula, road, dict(settings.lanes or {}), home.all_values())
     refuse_variables(query.formula)
     return with_values(query.formula, home.all_values())
 
 
-def _label(number: int | None, query: Query, place: int) -> str:
+def _identifier(number: int | None, query: Query, place: int) -> str:
     """The beginning of the names of functions: scenario_4, danger_SV_POV, or formula_1."""
     if number is not None:
         return name_of(number)
@@ -131,10 +177,10 @@ def _label(number: int | None, query: Query, place: int) -> str:
     return f"formula_{place}"
 
 
-def _free(label: str, taken: Mapping[str, object]) -> str:
-    """A label that no other has, in whatever letters."""
-    known, number, made = {x.lower() for x in taken}, 1, label
-    while made.lower() in known:
+def _unused_identifier(identifier: str, taken: Mapping[str, object]) -> str:
+    """An identifier that no other has, in whatever letters."""
+    identifiers, number, candidate = {x.lower() for x in taken}, 1, identifier
+    while candidate.lower() in identifiers:
         number += 1
-        made = f"{label}_{number}"
-    return made
+        candidate = f"{identifier}_{number}"
+    return candidate

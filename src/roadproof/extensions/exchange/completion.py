@@ -1,4 +1,4 @@
-"""What a shell completes formats with."""
+"""Formats for the completion of a shell."""
 
 from collections.abc import Mapping
 

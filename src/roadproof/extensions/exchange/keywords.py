@@ -1,15 +1,16 @@
-"""Keyword arguments of each question; made by ``roadproof.frontends.settings.keywords_file``."""
+"""Keyword arguments of each question; ``make generated`` writes this file."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypedDict
 
+from roadproof.frontends.settings.keywords import SearchPlaceKeywords
+
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
     from pathlib import Path
 
-    from roadproof.frontends.settings.value_types import RoadLike
-    from roadproof.library.bind import Number
+    from roadproof.extensions.encoding.kinds import Drives
 
 
 class ExportKeywords(TypedDict, total=False):
@@ -17,10 +18,7 @@ class ExportKeywords(TypedDict, total=False):
     specs: Iterable[str | Path]
 
 
-class CompileKeywords(TypedDict, total=False):
-    dt: Number
-    road: RoadLike | None
-    lanes: Mapping[str, str] | None
-    strict: bool
+class CompileKeywords(SearchPlaceKeywords, total=False):
+    drives: Drives
     memory: int
     name: str

@@ -21,7 +21,7 @@ from roadproof.errors import InputError
 from roadproof.extensions.exchange.protobuf import WireError, doubles_in, fields_of, integer_in, message_in
 from roadproof.extensions.maps.network import ZONES_ENDING
 from roadproof.extensions.traffic.formats.clock import Rate, clock_of
-from roadproof.extensions.traffic.formats.contradictions import contradictions
+from roadproof.extensions.traffic.formats.contradictions import contradiction_notes
 from roadproof.extensions.traffic.formats.measured_roads import MeasuredTraffic
 from roadproof.extensions.traffic.formats.off_line import follows_line, leave_out_strays
 from roadproof.extensions.traffic.formats.plausible import (
@@ -31,14 +31,19 @@ from roadproof.extensions.traffic.formats.plausible import (
     ContradictionChecks,
 )
 from roadproof.extensions.traffic.formats.recording import Floats, Integers, Recording
-from roadproof.extensions.traffic.formats.reliable import left_out_note, named, rate_of_change, reliable
+from roadproof.extensions.traffic.formats.reliable import (
+    first_names,
+    left_out_note,
+    rate_of_change,
+    reliable_part,
+)
 from roadproof.extensions.traffic.formats.selected_roads import chart_of, place_on_road
 from roadproof.extensions.traffic.formats.source import Files, Format, beside, with_suffix
 from roadproof.extensions.traffic.formats.table import CellError
 from roadproof.extensions.traffic.formats.tracks import Rule, without_bad
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.runtime.file_kind import other_format
-from roadproof.world.unread import unread_note
+from roadproof.world.not_read import not_read_note
 
 ENDING = ".osi"
 SENSOR_VIEW = "_sv_"
@@ -125,7 +130,7 @@ class _Samples:
         self.host: int | None = None
         self.unread: dict[str, None] = {}
 
-    def look(self, message: str, content: bytes) -> None:
+    def note_unread_fields(self, message: str, content: bytes) -> None:
         """Note the fields of a message of this kind that are not read and may have an effect."""
         known = {*_READ[message], *_HARMLESS[message]}
         for field in {number for number, _ in fields_of(content)} - known:
@@ -134,27 +139,31 @@ class _Samples:
     def add(self, number: int, content: bytes) -> None:
         """Add a moving object of the message of this number. Raises ``WireError``."""
         name = integer_in(message_in(content, 1) or b"", 1)
-        form = integer_in(content, 3)
+        object_type = integer_in(content, 3)
         kind = integer_in(message_in(content, 6) or b"", 1)
-        no_traffic = NO_TRAFFIC.get(kind, "") if form == _VEHICLE else NO_VEHICLES.get(form, "other objects")
+        no_traffic = (
+            NO_TRAFFIC.get(kind, "")
+            if object_type == _VEHICLE
+            else NO_VEHICLES.get(object_type, "other objects")
+        )
         if no_traffic:
             self.absent.setdefault(no_traffic, {})[name] = None
             return
         base = message_in(content, 2) or b""
-        self.look("MovingObject", content)
-        self.look("BaseMoving", base)
+        self.note_unread_fields("MovingObject", content)
+        self.note_unread_fields("BaseMoving", base)
         self.message.append(number)
         self.id.append(name)
         self.base.append(_base_of(base))
         self.kind.setdefault(name, KINDS.get(kind, "Other"))
 
     def notes(self) -> Iterator[str]:
-        """Which vehicle is the host, and what is left out."""
+        """Return which vehicle is the host, and what is left out."""
         if self.host is not None:
             yield f"host_vehicle_id is {self.host}"
         of = len({*self.kind}.union(*self.absent.values()))
         for what, names in self.absent.items():
-            yield left_out_note([*names], of, Why.OF_KIND(what))
+            yield left_out_note([*names], of, ReasonKind.OF_KIND(what))
 
 
 def _base_of(content: bytes) -> tuple[float, ...]:
@@ -183,20 +192,20 @@ def read_osi(path: Path, strict: bool = True, road: str | None = None) -> Record
         value = base[row, COLUMNS.index(column)] if column in COLUMNS else frame[row] + 1
         return f"message {frame[row] + 1}, moving_object {ids[row]}, {column}={value}"
 
-    def refuse(row: int, column: str, rule: str) -> CellError:
+    def cell_error(row: int, column: str, rule: str) -> CellError:
         return CellError(path, f"{cell(row, column)}: {rule}", row)
 
     base, derived = _with_accelerations(ids, base, rate)
-    kept, left_out = without_bad(ids, _rules(ids, frame, base), refuse, strict)
-    ids, frame, base = ids[kept], frame[kept], base[kept]
-    unread = unread_note(path, samples.unread, strict)
-    notes = (*samples.notes(), *left_out, *unread, *derived)
+    retained, left_out = without_bad(ids, _rules(ids, frame, base), cell_error, strict)
+    ids, frame, base = ids[retained], frame[retained], base[retained]
+    omissions = not_read_note(path, samples.unread, strict)
+    notes = (*samples.notes(), *left_out, *omissions, *derived)
     traffic = _traffic(str(path), rate, ids, frame, base, samples.kind, notes)
     recording, rows = place_on_road(traffic, str(road), strict=strict)
     fits = follows_line(traffic.centre[rows], recording)
     fitting = leave_out_strays(replace(recording, name=path.stem), fits, strict)
     rows = rows[np.repeat(fits, np.diff(recording.start))]
-    return reliable(fitting, strict, partial(_check_plausible, path, ids[rows], frame[rows]))
+    return reliable_part(fitting, strict, partial(_contradiction_notes, path, ids[rows], frame[rows]))
 
 
 def _read(path: Path) -> tuple[_Samples, Rate]:
@@ -206,7 +215,7 @@ def _read(path: Path) -> tuple[_Samples, Rate]:
         try:
             if SENSOR_VIEW in path.name:
                 message = message_in(message, _GROUND_TRUTH) or b""
-            samples.look("GroundTruth", message)
+            samples.note_unread_fields("GroundTruth", message)
             time = message_in(message, _TIMESTAMP) or b""
             times.append(integer_in(time, 1) * _NANO + integer_in(time, 2))
             host = message_in(message, _HOST)
@@ -245,7 +254,7 @@ def _messages(path: Path) -> Iterator[bytes]:
 
 
 def _rate_of(path: Path, times: list[int]) -> Rate:
-    """How many messages a second there are, all of them equally far apart. Raises ``InputError``."""
+    """Return how many messages a second there are, all of them equally far apart. Raises ``InputError``."""
     if len(times) < 2 or times[1] <= times[0]:
         raise InputError(f"{path}: at least two messages are needed, each later than the one before")
     ahead = (np.array(times) - times[0]) / _NANO
@@ -254,8 +263,10 @@ def _rate_of(path: Path, times: list[int]) -> Rate:
     clock = clock_of(path, np.unique(ahead), steps[later], counts[later])
     for number, frame in enumerate(clock.frames(ahead)):
         if frame != number or clock.misses(ahead)[number] > 0.1 * clock.step:
-            told = f"timestamp={times[number] / _NANO:g} s: messages are 1/{clock.rate} s apart, without gaps"
-            raise InputError(f"{path}, message {number + 1}, {told}")
+            problem = (
+                f"timestamp={times[number] / _NANO:g} s: messages are 1/{clock.rate} s apart, without gaps"
+            )
+            raise InputError(f"{path}, message {number + 1}, {problem}")
     return clock.rate
 
 
@@ -271,12 +282,12 @@ def _with_accelerations(ids: Integers, base: Floats, rate: Rate) -> tuple[Floats
             derived.append(int(ids[begin]))
             for k in (0, 1):
                 base[begin:end, 7 + k] = rate_of_change(base[begin:end, 5 + k], rate)
-    told = f"velocities imply acceleration of {len(derived)} vehicles ({named(derived)})"
-    return base, [told] * bool(derived)
+    note = f"velocities imply acceleration of {len(derived)} vehicles ({first_names(derived)})"
+    return base, [note] * bool(derived)
 
 
 def _rules(ids: Integers, frame: Integers, base: Floats) -> Iterator[Rule]:
-    """For each column which samples are fine, and what they break if not."""
+    """Yield a rule for each column: which samples keep it, and its text."""
     same = np.diff(ids, prepend=-1) == 0
     step = np.diff(frame, prepend=0)
     yield ~same | (step == 1), "message", "a vehicle is once in each message, from its first to its last"
@@ -318,7 +329,7 @@ def _traffic(
     )
 
 
-def _check_plausible(
+def _contradiction_notes(
     path: Path, ids: Integers, frame: Integers, checks: ContradictionChecks, rows: Integers
 ) -> Iterator[str]:
     """Notes on what the trace contradicts itself in. Raises ``InputError`` where that is too much."""
@@ -326,7 +337,7 @@ def _check_plausible(
     def at(row: int, signal: str) -> str:
         return f"message {frame[rows[row]] + 1}, moving_object {ids[rows[row]]}, {signal} on the road"
 
-    return contradictions(path, checks, at, lambda row: at(row, "place"), "lanelet of the road")
+    return contradiction_notes(path, checks, at, lambda row: at(row, "place"), "lanelet of the road")
 
 
 def _find(path: Path, road: str | None = None) -> dict[str, Files]:
@@ -335,7 +346,7 @@ def _find(path: Path, road: str | None = None) -> dict[str, Files]:
     return {x.stem: (*(y for y in charts if y.is_file()), x) for x in with_suffix(path, ENDING)}
 
 
-def _on(road: str) -> Format:
+def _on_map_road(road: str) -> Format:
     """The format, whose recordings are read on a road of a map."""
     return replace(FORMAT, find=partial(_find, road=road), read=partial(read_osi, road=road))
 
@@ -346,5 +357,5 @@ FORMAT = Format(
     _find,
     read_osi,
     "{0}, timestamps {step} s apart",
-    on_road=_on,
+    on_road=_on_map_road,
 )

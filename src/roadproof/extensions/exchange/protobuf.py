@@ -55,32 +55,32 @@ def _varint(message: bytes, place: int) -> tuple[int, int]:
 
 def message_in(message: bytes, number: int) -> bytes | None:
     """The last message that is field ``number``; None where there is none. Raises ``WireError``."""
-    found = None
+    inner = None
     for each, value in fields_of(message):
         if each == number:
             if not isinstance(value, bytes):
                 raise WireError(f"field {number} is no message")
-            found = value
-    return found
+            inner = value
+    return inner
 
 
 def integer_in(message: bytes, number: int) -> int:
     """The signed integer that is field ``number``; 0 where there is none. Raises ``WireError``."""
-    found = 0
+    integer = 0
     for each, value in fields_of(message):
         if each == number:
             if not isinstance(value, int):
                 raise WireError(f"field {number} is no integer")
-            found = value - (1 << 64) if value >= 1 << 63 else value
-    return found
+            integer = value - (1 << 64) if value >= 1 << 63 else value
+    return integer
 
 
 def doubles_in(message: bytes, count: int) -> tuple[float, ...]:
     """The doubles that are the fields 1 to ``count``, 0 where there is none. Raises ``WireError``."""
-    found = [0.0] * count
+    doubles = [0.0] * count
     for number, value in fields_of(message):
         if number <= count:
             if not isinstance(value, bytes) or len(value) != 8:
                 raise WireError(f"field {number} is no double")
-            (found[number - 1],) = struct.unpack("<d", value)
-    return tuple(found)
+            (doubles[number - 1],) = struct.unpack("<d", value)
+    return tuple(doubles)

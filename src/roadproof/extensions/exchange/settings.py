@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from roadproof.extensions.encoding.kinds import TARGETS
+from roadproof.extensions.encoding.settings import drives_to_encode
 from roadproof.frontends.settings import groups
 from roadproof.frontends.settings.option import Settings, option
-from roadproof.frontends.settings.readers import (
-    named,
-    seconds,
-    whole,
-)
+from roadproof.frontends.settings.readers import seconds, whole
 from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
 
+    from roadproof.extensions.encoding.kinds import Drives
     from roadproof.frontends.settings.value_types import RoadLike
     from roadproof.library.bind import Number
 
@@ -42,23 +40,31 @@ class Export(Settings):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Compile(groups.Values):
+class Compile(groups.Values, groups.SearchPlace):
     """Options of ``compile``."""
 
     sets: tuple[str, ...] = groups.one_set("base")
-    to: str = option("c", "--to TARGET", "c: C99 (default)", choices=("c",), keyword=False)
-    dt: Number = option(Fraction(1, 25), "--dt S", "seconds between samples (default: 1/25)", read=seconds)
+    to: str = option(
+        "c",
+        "--to TARGET",
+        "c: monitors in C99 (default); mps, lp or smt2: the problem that a search for drives solves",
+        choices=("c", *TARGETS),
+        keyword=False,
+    )
+    dt: Number | None = option(
+        None,
+        "--dt S",
+        "seconds between samples (default: c 1/25; else the coarsest that fits, at most 3/5)",
+        read=seconds,
+    )
     road: RoadLike | None = option(
         None,
         "--road R",
-        "road on which lanes are found from positions (default: samples have flags for them)",
+        "road (default: c has flags for lanes in samples; else by formula)",
     )
-    lanes: Mapping[str, str] | None = option(
-        None, "--lane [L=]LANE", "with --road: lane that L means", read=named("L"), gather=dict
-    )
-    strict: bool = groups.strict_reading()
+    drives: Drives = drives_to_encode()
     memory: int = option(
         65_536, "--memory N", "bytes that the state of a monitor may take (default: 65536)", read=whole(1)
     )
     name: str = option("monitor", "--name NAME", "name of the files and of types (default: monitor)")
-    out: str | Path | None = groups.folder_for("NAME.h and NAME.c", command_line_only=True, required=True)
+    out: str | Path | None = groups.folder_for("the files", command_line_only=True, required=True)

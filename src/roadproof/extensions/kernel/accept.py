@@ -1,7 +1,8 @@
-"""Certificates put to Coq: each is accepted, refused or unknown, and accepted only by Coq's word.
+"""The check of certificates by Coq: each is accepted, refused or unknown, and accepted by Coq alone.
 
-Several go into one file, so that Coq loads its library once. Where Coq refuses one, the others are put to it
-without it; what is accepted has been in a file that Coq accepted whole, and that stands on known axioms.
+Several certificates go into one file, since loading the library is slow. If Coq refuses one, the others are
+checked again without it. Every accepted certificate was in a file that Coq accepted as a whole and that uses
+known axioms only.
 """
 
 import re
@@ -10,15 +11,15 @@ from dataclasses import dataclass, field
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.kernels import Ruling, Word
+from roadproof.evidence.kernels import KernelRuling, KernelVerdict
 from roadproof.extensions.kernel.branch import NotFoundError
 from roadproof.extensions.kernel.coq import Coq, CoqRun
-from roadproof.extensions.kernel.search import find
+from roadproof.extensions.kernel.search import search_tableau
 from roadproof.extensions.kernel.source import Module, UnreasonedError, file, module
 from roadproof.extensions.kernel.statement import Statement, state
 from roadproof.extensions.kernel.tableau import Tableau, lines, read_lines
 from roadproof.library.specification import Library
-from roadproof.reasons import NO_REASON, Why
+from roadproof.reasons import NO_REASON, ReasonKind
 
 # Those of Coq's real numbers and of classical logic; nothing else may be relied on.
 AXIOMS = frozenset(
@@ -36,36 +37,36 @@ _AXIOM = re.compile(r"^([A-Za-z_][\w.']*)(?: :|$)", re.MULTILINE)
 
 @dataclass(frozen=True)
 class CoqModule:
-    """A certificate as a module of Coq, or why there is none."""
+    """A certificate as a Coq module, or the ruling that explains why there is no module."""
 
     module: Module | None
     limits: int = 0
-    refusal: Ruling | None = None
+    refusal: KernelRuling | None = None
 
 
-def without_question(error: RoadproofError) -> CoqModule:
-    """Evidence that says nothing that a kernel could be asked."""
-    return CoqModule(None, refusal=Ruling(Word.REFUSED, Why.NOT_PUT(error)))
+def refused_module(error: RoadproofError) -> CoqModule:
+    """Return the result for evidence that contains nothing for a kernel to check."""
+    return CoqModule(None, refusal=KernelRuling(KernelVerdict.REFUSED, ReasonKind.NOT_PUT(error)))
 
 
-def without_text(error: RoadproofError) -> CoqModule:
-    """Evidence whose claim or proof has no words in a kernel."""
-    return CoqModule(None, refusal=Ruling(Word.UNKNOWN, Why.NOT_PRINTED(error)))
+def unprintable_module(error: RoadproofError) -> CoqModule:
+    """Return the result for evidence whose claim or proof cannot be written in Coq."""
+    return CoqModule(None, refusal=KernelRuling(KernelVerdict.UNKNOWN, ReasonKind.NOT_PRINTED(error)))
 
 
 @dataclass
 class KernelRulings:
-    """Rulings by the name of a module; seconds of the processor and megabytes that Coq took."""
+    """The rulings by name of module, with the processor time and memory that Coq took."""
 
-    rulings: dict[str, Ruling] = field(default_factory=dict)
+    rulings: dict[str, KernelRuling] = field(default_factory=dict)
     seconds: float = 0.0
     megabytes: float = 0.0
 
 
 def find_tableau(certificate: Certificate, library: Library) -> tuple[str, ...] | None:
-    """The lines of a tableau for a certificate, None where none is found. Coq is not asked."""
+    """Return the lines of a tableau for a certificate, found without Coq; None if the search fails."""
     try:
-        return lines(find(state(certificate, library, certificate.query).goal))
+        return lines(search_tableau(state(certificate, library, certificate.query).goal))
     except (NotFoundError, RoadproofError):
         return None
 
@@ -74,133 +75,142 @@ def prepare(
     name: str,
     certificate: Certificate,
     library: Library,
-    written: Callable[[str, Statement, Tableau], Module] = module,
+    print_module: Callable[[str, Statement, Tableau], Module] = module,
 ) -> CoqModule:
-    """The certificate as ``written`` for Coq: with its own tableau, or with one that is searched."""
+    """Return the Coq module of a certificate, with its own tableau or a tableau found by search.
+
+    ``print_module`` writes the module; the extracted program has another format.
+    """
     try:
         statement = state(certificate, library)
         tableau = _tableau(certificate, statement)
     except NotFoundError as error:
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, Why.NO_TABLEAU(error)))
+        return CoqModule(None, refusal=KernelRuling(KernelVerdict.UNKNOWN, ReasonKind.NO_TABLEAU(error)))
     except RoadproofError as error:
-        return without_question(error)
+        return refused_module(error)
     try:
-        return CoqModule(written(name, statement, tableau), statement.limits)
+        return CoqModule(print_module(name, statement, tableau), statement.limits)
     except UnreasonedError as error:
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, error.reason, error.number))
+        return CoqModule(None, refusal=KernelRuling(KernelVerdict.UNKNOWN, error.reason, error.number))
     except RoadproofError as error:
-        return without_text(error)
+        return unprintable_module(error)
 
 
 def _tableau(certificate: Certificate, statement: Statement) -> Tableau:
     if certificate.tableau is not None:
         return read_lines(certificate.tableau)
-    return find(statement.goal)
+    return search_tableau(statement.goal)
 
 
 def judge(coq: Coq, prepared: Mapping[str, CoqModule]) -> KernelRulings:
-    """What Coq says of each, by name."""
+    """Return Coq's rulings on prepared modules, by name."""
     judged = KernelRulings({name: x.refusal for name, x in prepared.items() if x.refusal is not None})
-    _settle(coq, [x.module for x in prepared.values() if x.module is not None], prepared, judged)
+    _judge_modules(coq, [x.module for x in prepared.values() if x.module is not None], prepared, judged)
     return judged
 
 
-def _settle(
+def _judge_modules(
     coq: Coq, modules: Sequence[Module], prepared: Mapping[str, CoqModule], judged: KernelRulings
 ) -> None:
-    """One file, and where Coq stops in it, one for what stands before and one for what stands after."""
+    """Check modules in one file; if Coq stops in one of them, check the others separately."""
     if not modules:
         return
-    ran = _put(coq, modules, judged)
-    if ran.code == 0:
-        _conclude(modules, prepared, ran, judged)
+    run = _run_coq(coq, modules, judged)
+    if run.code == 0:
+        _rule_accepted(modules, prepared, run, judged)
         return
-    blamed = _blamed(modules, ran)
-    if blamed is None and len(modules) > 1:
+    failure = _first_failure(modules, run)
+    if failure is None and len(modules) > 1:
         half = len(modules) // 2
-        _settle(coq, modules[:half], prepared, judged)
-        _settle(coq, modules[half:], prepared, judged)
+        _judge_modules(coq, modules[:half], prepared, judged)
+        _judge_modules(coq, modules[half:], prepared, judged)
         return
-    place, ruling = blamed or (0, Ruling(Word.UNKNOWN, Why.COQ_ENDED(_first(ran))))
+    place, ruling = failure or (
+        0,
+        KernelRuling(KernelVerdict.UNKNOWN, ReasonKind.COQ_ENDED(_first_message(run))),
+    )
     judged.rulings[modules[place].name] = ruling
-    _settle(coq, modules[:place], prepared, judged)
-    _settle(coq, modules[place + 1 :], prepared, judged)
+    _judge_modules(coq, modules[:place], prepared, judged)
+    _judge_modules(coq, modules[place + 1 :], prepared, judged)
 
 
-def _put(coq: Coq, modules: Sequence[Module], judged: KernelRulings) -> CoqRun:
-    ran = coq.run(file(modules) + closing(modules))
-    judged.seconds += ran.seconds
-    judged.megabytes = max(judged.megabytes, ran.megabytes)
-    return ran
+def _run_coq(coq: Coq, modules: Sequence[Module], judged: KernelRulings) -> CoqRun:
+    run = coq.run(file(modules) + closing(modules))
+    judged.seconds += run.seconds
+    judged.megabytes = max(judged.megabytes, run.megabytes)
+    return run
 
 
 def closing(modules: Sequence[Module]) -> str:
-    """The end of a file: all theorems as one thing, and what it rests on."""
-    proved = "I"
+    """Return the end of a file: all theorems as one term, and the command that prints its axioms."""
+    conjunction = "I"
     for x in modules:
-        proved = f"(conj {x.name}.proved {proved})"
-    return f"Definition {ALL} := {proved}.\nPrint Assumptions {ALL}.\n"
+        conjunction = f"(conj {x.name}.proved {conjunction})"
+    return f"Definition {ALL} := {conjunction}.\nPrint Assumptions {ALL}.\n"
 
 
-def _conclude(
-    modules: Sequence[Module], prepared: Mapping[str, CoqModule], ran: CoqRun, judged: KernelRulings
+def _rule_accepted(
+    modules: Sequence[Module], prepared: Mapping[str, CoqModule], run: CoqRun, judged: KernelRulings
 ) -> None:
-    axioms = axioms_of(ran.said)
-    for x in modules:
-        limits = prepared[x.name].limits
+    """Add the rulings for a file that Coq accepted: its axioms must be known ones."""
+    axioms = axioms_of(run.output)
+    for coq_module in modules:
+        limits = prepared[coq_module.name].limits
         if axioms is None:
-            ruling = Ruling(Word.UNKNOWN, Why.AXIOMS_UNSAID())
+            ruling = KernelRuling(KernelVerdict.UNKNOWN, ReasonKind.AXIOMS_UNSAID())
         elif set(axioms) - AXIOMS:
-            ruling = Ruling(Word.REFUSED, Why.AXIOMS(", ".join(sorted(set(axioms) - AXIOMS))))
+            ruling = KernelRuling(
+                KernelVerdict.REFUSED, ReasonKind.AXIOMS(", ".join(sorted(set(axioms) - AXIOMS)))
+            )
         else:
-            ruling = Ruling(Word.ACCEPTED, NO_REASON, None, limits, axioms)
-        judged.rulings[x.name] = ruling
+            ruling = KernelRuling(KernelVerdict.ACCEPTED, NO_REASON, None, limits, axioms)
+        judged.rulings[coq_module.name] = ruling
 
 
-def axioms_of(said: str) -> tuple[str, ...] | None:
-    """The names that ``Print Assumptions`` prints, None where it does not speak."""
-    if said.strip() == "Closed under the global context":
+def axioms_of(output: str) -> tuple[str, ...] | None:
+    """Return the axiom names in the output of ``Print Assumptions``; None if it has another form."""
+    if output.strip() == "Closed under the global context":
         return ()
-    before, found, listed = said.partition("Axioms:\n")
-    return tuple(_AXIOM.findall(listed)) if found and not before.strip() else None
+    before, heading, listed = output.partition("Axioms:\n")
+    return tuple(_AXIOM.findall(listed)) if heading and not before.strip() else None
 
 
-def _blamed(modules: Sequence[Module], ran: CoqRun) -> tuple[int, Ruling] | None:
-    """Which module Coq stopped at, and what that means for it; None where Coq does not say."""
-    found = _PLACE.search(ran.complained)
-    if found is None:
+def _first_failure(modules: Sequence[Module], run: CoqRun) -> tuple[int, KernelRuling] | None:
+    """Return the module at which Coq stopped, and its ruling; None if Coq reports no place."""
+    error_place = _PLACE.search(run.errors)
+    if error_place is None:
         return None
-    line = int(found[1]) - _head_lines()
-    for place, x in enumerate(modules):
-        if line <= x.lines:
-            return place, _why(x, line, " ".join(found[2].split()))
-        line -= x.lines
+    line = int(error_place[1]) - _head_lines()
+    for place, coq_module in enumerate(modules):
+        if line <= coq_module.lines:
+            return place, _ruling_at(coq_module, line, " ".join(error_place[2].split()))
+        line -= coq_module.lines
     return None
 
 
-def _why(module: Module, line: int, said: str) -> Ruling:
+def _ruling_at(module: Module, line: int, error: str) -> KernelRuling:
     if line >= module.theorem:
-        if '"true = true"' in said:
-            return Ruling(Word.REFUSED, Why.NOT_BY_COQ())
-        if 'Unable to unify "true" with "false"' in said:
-            return Ruling(Word.REFUSED, Why.NO_SCHEMA())
-        return Ruling(Word.UNKNOWN, Why.COQ_SAYS(said))
+        if '"true = true"' in error:
+            return KernelRuling(KernelVerdict.REFUSED, ReasonKind.NOT_BY_COQ())
+        if 'Unable to unify "true" with "false"' in error:
+            return KernelRuling(KernelVerdict.REFUSED, ReasonKind.NO_SCHEMA())
+        return KernelRuling(KernelVerdict.UNKNOWN, ReasonKind.COQ_SAYS(error))
     lemma = sum(line >= begins for begins in module.lemmas)
     if lemma:
-        return Ruling(Word.UNKNOWN, Why.LEMMA(lemma), lemma)
-    return Ruling(Word.UNKNOWN, Why.COQ_DOES_NOT_READ(said))
+        return KernelRuling(KernelVerdict.UNKNOWN, ReasonKind.LEMMA(lemma), lemma)
+    return KernelRuling(KernelVerdict.UNKNOWN, ReasonKind.COQ_DOES_NOT_READ(error))
 
 
 def _head_lines() -> int:
     return file([]).count("\n")
 
 
-def _first(ran: CoqRun) -> str:
-    return " ".join((ran.complained or ran.said).split())[:200] or f"exit code {ran.code}"
+def _first_message(run: CoqRun) -> str:
+    return " ".join((run.errors or run.output).split())[:200] or f"exit code {run.code}"
 
 
-def batches(modules: Mapping[str, CoqModule], count: int) -> Iterator[dict[str, CoqModule]]:
-    """About ``count`` parts of equal size."""
+def split_evenly(modules: Mapping[str, CoqModule], count: int) -> Iterator[dict[str, CoqModule]]:
+    """Yield about ``count`` parts of equal size."""
     names = list(modules)
     for place in range(min(count, len(names))):
         yield {name: modules[name] for name in names[place::count]}

@@ -1,4 +1,4 @@
-"""Certificates and drives put to Coq or to the extracted program, many at once, a file a process."""
+"""The kernels of this extension, run in parallel: Coq, and the program extracted from its checkers."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -6,75 +6,79 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
+from roadproof.core_record import CERTIFICATE, DRIVES, NONE_WITHIN, REFUTATION
 from roadproof.errors import RoadproofError
-from roadproof.evidence import drive_file
-from roadproof.evidence.answer_files import REFUTATION, RefutationFile
-from roadproof.evidence.certificate import SCHEMA, Certificate, read_certificate_data
+from roadproof.evidence.answer_files import RefutationFile
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.certificate_file import read_certificate_data
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.evidence.kernels import (
     KernelAnswer,
     KernelName,
     KernelQuestion,
+    KernelRuling,
     Kernels,
-    Ruling,
-    Word,
+    KernelVerdict,
 )
-from roadproof.evidence.none_within import SCHEMA as NONE_WITHIN
-from roadproof.evidence.none_within import NoneWithinFile, read_none_within
+from roadproof.evidence.none_within import NoneWithinFile
+from roadproof.evidence.none_within_file import read_none_within
 from roadproof.evidence.strict import read_json
 from roadproof.extensions.kernel import accept, coq, extracted, ocaml, programs
 from roadproof.extensions.kernel.accept import CoqModule, KernelRulings
 from roadproof.extensions.kernel.derivations.prepare import prepare as prepare_drive
 from roadproof.extensions.kernel.derivations.prepare import prepare_trace
-from roadproof.extensions.kernel.drive import module as source_drive
+from roadproof.extensions.kernel.drive import drive_module as source_drive
 from roadproof.extensions.kernel.names import WORDS
 from roadproof.extensions.kernel.source import file
 from roadproof.extensions.kernel.source import module as source_proof
-from roadproof.extensions.kernel.trace import Refutation
+from roadproof.extensions.kernel.trace import TraceQuestion
 from roadproof.extensions.kernel.trace import trace_module as source_trace
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime import pool
 from roadproof.runtime.executors import Jobs
-from roadproof.runtime.files import make_folder, write_whole
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.files import make_folder, write_atomic
+from roadproof.runtime.package_data import shipped_folder
 from roadproof.runtime.pool import Progress
 from roadproof.runtime.records import dataclass
 
 
-def find(kernel: KernelName) -> None:
-    """Raises ``MissingSolverError`` where what a kernel needs is not installed."""
+def require_installed(kernel: KernelName) -> None:
+    """Raise ``MissingSolverError`` if a program that the kernel needs is not installed."""
     if kernel == "coq":
-        coq.find()
+        coq.find_coqc()
     else:
-        ocaml.find()
+        ocaml.find_ocamlopt()
 
 
 @contextmanager
 def _judging(kernel: KernelName) -> Iterator[tuple[str, Callable[[Mapping[str, CoqModule]], KernelRulings]]]:
-    """The version of a kernel, and its judge of prepared files."""
+    """Yield the version of a kernel, and the function that judges prepared modules."""
     if kernel == "coq":
-        with coq.ready() as found:
-            yield found.version, partial(accept.judge, found)
+        with coq.ready() as coq_program:
+            yield coq_program.version, partial(accept.judge, coq_program)
     else:
         with ocaml.ready() as program:
             yield program.version, partial(extracted.judge, program)
 
 
-def put(
-    asked: Sequence[KernelQuestion],
+def check_with_kernel(
+    questions: Sequence[KernelQuestion],
     jobs: Jobs,
     progress: Progress | None = None,
     kernel: KernelName = "coq",
 ) -> KernelAnswer:
-    """What a kernel says of each certificate and drive; nothing of others. Raises ``MissingSolverError``."""
+    """Return the rulings on certificates, drives and traces; other questions get none.
+
+    Raises ``MissingSolverError``.
+    """
     with _judging(kernel) as (version, judge):
-        prepared = prepare_all(asked, jobs, progress, kernel)
+        prepared = prepare_all(questions, jobs, progress, kernel)
         count = pool.count_workers(list(prepared), jobs) if prepared else 0
-        parts = list(accept.batches(prepared, count))
-        rulings: dict[str, Ruling] = {}
+        parts = list(accept.split_evenly(prepared, count))
+        rulings: dict[str, KernelRuling] = {}
         seconds = megabytes = 0.0
         for judged in pool.in_order(pool.work(judge, parts, jobs, _lost, progress, "files for the kernel")):
             rulings |= judged.rulings
@@ -84,25 +88,25 @@ def put(
 
 
 def write(
-    asked: Sequence[KernelQuestion], folder: Path, jobs: Jobs, kernel: KernelName = "coq"
+    questions: Sequence[KernelQuestion], folder: Path, jobs: Jobs, kernel: KernelName = "coq"
 ) -> dict[str, Reason]:
-    """A file for each certificate and drive, with the sources of the kernel below; it is not asked.
+    """Write a file for each question, with the sources of the kernel beside them; the kernel does not run.
 
-    Comes back with why there is no file, by name, where there is none.
+    Returns the reasons for missing files, by name.
     """
-    home = shipped("proofs") / "kernel"
+    home = shipped_folder("proofs") / "kernel"
     for source in _sources(kernel):
         make_folder(folder / _FOLDER[kernel])
-        write_whole(folder / _FOLDER[kernel] / source.name, (home / source).read_bytes())
+        write_atomic(folder / _FOLDER[kernel] / source.name, (home / source).read_bytes())
     reasons: dict[str, Reason] = {}
-    for name, x in prepare_all(asked, jobs, None, kernel).items():
-        if x.module is None:
-            reasons[name] = x.refusal.reason if x.refusal else NO_REASON
+    for name, prepared in prepare_all(questions, jobs, None, kernel).items():
+        if prepared.module is None:
+            reasons[name] = prepared.refusal.reason if prepared.refusal else NO_REASON
         elif kernel == "coq":
-            content = file([x.module]) + accept.closing([x.module])
-            write_whole(folder / f"{name}.v", content.encode("ascii"))
+            content = file([prepared.module]) + accept.closing([prepared.module])
+            write_atomic(folder / f"{name}.v", content.encode("ascii"))
         else:
-            write_whole(folder / f"{name}.txt", x.module.text.encode("ascii"))
+            write_atomic(folder / f"{name}.txt", prepared.module.text.encode("ascii"))
     return reasons
 
 
@@ -110,41 +114,42 @@ _FOLDER: Mapping[KernelName, str] = {"coq": "Roadproof", "extracted": "ocaml"}
 
 
 def _sources(kernel: KernelName) -> list[Path]:
-    """What a kernel is made of, below proofs/kernel."""
+    """Return the paths of the kernel's sources, below proofs/kernel."""
     if kernel == "coq":
         return [Path(f"{name}.v") for name in coq.THEORIES]
     return [Path("ocaml") / f"{name}.ml" for name in ocaml.SOURCES]
 
 
 def names_of(paths: Iterable[Path]) -> dict[Path, str]:
-    """A name for each file that is one in Coq, too: of its own name, and of a number where that is taken.
+    """Return for each file a name that is valid in Coq; duplicates get a number.
 
     >>> list(names_of([Path("a b.json"), Path("a_b.json"), Path("1.json"), Path("fun.json")]).values())
     ['a_b', 'a_b_2', 'claim_1', 'fun_2']
     """
-    found: dict[Path, str] = {}
+    names: dict[Path, str] = {}
     taken = set(WORDS)
     for path in paths:
-        plain = re.sub(r"\W", "_", path.stem, flags=re.ASCII)[:100]
-        plain = plain if plain[:1].isalpha() else f"claim_{plain}"
-        name, count = plain, 1
+        base = re.sub(r"\W", "_", path.stem, flags=re.ASCII)[:100]
+        base = base if base[:1].isalpha() else f"claim_{base}"
+        name, count = base, 1
         while name in taken:
             count += 1
-            name = f"{plain}_{count}"
+            name = f"{base}_{count}"
         taken.add(name)
-        found[path] = name
-    return found
+        names[path] = name
+    return names
 
 
 def prepare_all(
-    asked: Sequence[KernelQuestion],
+    questions: Sequence[KernelQuestion],
     jobs: Jobs,
     progress: Progress | None = None,
     kernel: KernelName = "coq",
 ) -> dict[str, CoqModule]:
+    """Return the module of each question by name, prepared in parallel; unknown kinds of files have none."""
     prepare = partial(_prepare, kernel)
-    made = pool.in_order(pool.work(prepare, asked, jobs, _unprepared, progress, "claims to be printed"))
-    return {x.name: y for x, y in zip(asked, made, strict=True) if y is not None}
+    modules = pool.in_order(pool.work(prepare, questions, jobs, _failed, progress, "claims to be printed"))
+    return {x.name: y for x, y in zip(questions, modules, strict=True) if y is not None}
 
 
 # How drives, traces and proofs are written for each kernel.
@@ -152,80 +157,82 @@ _COQ = source_drive, source_trace, source_proof
 _EXTRACTED = extracted.drive, extracted.trace, extracted.proof
 
 
-def _prepare(kernel: KernelName, asked: KernelQuestion) -> CoqModule | None:
-    content: object = asked.certificate
+def _prepare(kernel: KernelName, question: KernelQuestion) -> CoqModule | None:
+    content: object = question.certificate
     if isinstance(content, Path):
         try:
             content = _read(content)
         except RoadproofError:
             return None
-    home = asked.home if isinstance(asked.home, Library) else load_library(asked.home)
+    library = question.home if isinstance(question.home, Library) else load_library(question.home)
     if isinstance(content, NoneWithinFile):
-        return _none_within(kernel, asked.name, content, home)
+        return _none_within(kernel, question.name, content, library)
     drive, trace, proof = _COQ if kernel == "coq" else _EXTRACTED
-    if isinstance(content, Refutation):
-        return prepare_trace(asked.name, content, home, trace)
+    if isinstance(content, TraceQuestion):
+        return prepare_trace(question.name, content, library, trace)
     if isinstance(content, DriveFile):
-        return prepare_drive(asked.name, content, home, drive)
-    return accept.prepare(asked.name, content, home, proof) if isinstance(content, Certificate) else None
+        return prepare_drive(question.name, content, library, drive)
+    return (
+        accept.prepare(question.name, content, library, proof) if isinstance(content, Certificate) else None
+    )
 
 
-def _none_within(kernel: KernelName, name: str, file: NoneWithinFile, home: Library) -> CoqModule:
-    """The programs that the encoder derives, with the trees of a file."""
+def _none_within(kernel: KernelName, name: str, file: NoneWithinFile, library: Library) -> CoqModule:
+    """Return the module of the programs that the encoder derives from a file, with the trees in the file."""
     from roadproof.engines.search.none_within import derive
 
     try:
-        derived = derive(file, home)
+        derived = derive(file, library)
     except RoadproofError as error:
-        return accept.without_question(error)
+        return accept.refused_module(error)
     trees = (tree for _, tree in file.refutations)
     pairs = list(zip(derived.programs, trees, strict=True))
-    written = programs.prepare if kernel == "coq" else programs.form
-    return written(name, [file.formula, derived.limits], pairs)
+    print_module = programs.prepare if kernel == "coq" else programs.form
+    return print_module(name, [file.formula, derived.limits], pairs)
 
 
-def _read(path: Path) -> Certificate | DriveFile | NoneWithinFile | Refutation | None:
-    """Raises ``InputError`` for a file that is damaged."""
+def _read(path: Path) -> Certificate | DriveFile | NoneWithinFile | TraceQuestion | None:
+    """Return the content of a file; None for an unknown schema. Raises ``InputError`` for a damaged file."""
     content = read_json(path)
     schema = content.get("schema") if isinstance(content, dict) else None
-    if schema in drive_file.SCHEMAS_READ:
+    if schema in DRIVES:
         return read_drive(content, str(path))
     if schema == NONE_WITHIN:
         return read_none_within(content, str(path))
     if schema == REFUTATION:
         file = read(RefutationFile, content, str(path))
-        return Refutation(file.claim, file.set, file.options, file.assuming, file.trace, str(path))
-    return read_certificate_data(content, str(path)) if schema == SCHEMA else None
+        return TraceQuestion(file.claim, file.set, file.options, file.assuming, file.trace, str(path))
+    return read_certificate_data(content, str(path)) if schema == CERTIFICATE else None
 
 
-def _unprepared(asked: KernelQuestion, reason: Reason) -> CoqModule:
-    return CoqModule(None, refusal=Ruling(Word.UNKNOWN, reason))
+def _failed(question: KernelQuestion, reason: Reason) -> CoqModule:
+    return CoqModule(None, refusal=KernelRuling(KernelVerdict.UNKNOWN, reason))
 
 
 def _lost(part: Mapping[str, CoqModule], reason: Reason) -> KernelRulings:
-    return KernelRulings({name: Ruling(Word.UNKNOWN, reason) for name in part})
+    return KernelRulings({name: KernelRuling(KernelVerdict.UNKNOWN, reason) for name in part})
 
 
 @dataclass(frozen=True)
 class CoqAndExtracted(Kernels):
-    """Coq, and the program that it makes of its checkers."""
+    """Coq, and the program extracted from its checkers."""
 
-    def find(self, kernel: KernelName) -> None:
-        find(kernel)
+    def require_installed(self, kernel: KernelName) -> None:
+        require_installed(kernel)
 
-    def put(
+    def check(
         self,
-        asked: Sequence[KernelQuestion],
+        questions: Sequence[KernelQuestion],
         jobs: Jobs,
         progress: Progress | None = None,
         kernel: KernelName = "coq",
     ) -> KernelAnswer:
-        return put(asked, jobs, progress, kernel)
+        return check_with_kernel(questions, jobs, progress, kernel)
 
     def write(
-        self, asked: Sequence[KernelQuestion], folder: Path, jobs: Jobs, kernel: KernelName = "coq"
+        self, questions: Sequence[KernelQuestion], folder: Path, jobs: Jobs, kernel: KernelName = "coq"
     ) -> dict[str, Reason]:
-        return write(asked, folder, jobs, kernel)
+        return write(questions, folder, jobs, kernel)
 
     def names_of(self, paths: Iterable[Path]) -> dict[Path, str]:
         return names_of(paths)

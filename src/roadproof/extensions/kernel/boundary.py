@@ -1,13 +1,13 @@
-"""Boundaries of driver models put to Coq: the formula is true of a state if and only if the motion collides.
+"""The check by Coq of a driver model's boundary: a formula holds in a state exactly if the motion collides.
 
-The formula is printed as that of any claim. The motion is that of proofs/kernel/Prescribed.v, and the theorem
-about numbers that a proof rests on is in proofs/kernel/Boundary.v, Following.v or Responding.v.
+The formula is printed like that of any claim. The motion is defined in proofs/kernel/Prescribed.v. The proof
+uses a theorem about numbers from proofs/kernel/Boundary.v, Following.v or Responding.v.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from roadproof.evidence.kernels import Word
+from roadproof.evidence.kernels import KernelVerdict
 from roadproof.extensions.kernel.accept import AXIOMS, axioms_of
 from roadproof.extensions.kernel.coq import Coq
 from roadproof.extensions.kernel.names import literal
@@ -17,7 +17,7 @@ from roadproof.extensions.kernel.statement import bounds_of, formals_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Specification
 from roadproof.logic.rewrite import parameters_of
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.reasons import NO_REASON, Reason, ReasonKind
 
 _HEAD = """\
 From Coq Require Import Reals QArith String List.
@@ -38,11 +38,11 @@ _AEB = {"replace": "in_place", "max": "greater", "add": "together"}
 
 
 @dataclass(frozen=True)
-class _Entry:
+class _BoundaryProof:
     """A theorem of a file in proofs/kernel, and the motion of Prescribed.v that it is about.
 
-    In ``motion`` {p} stands before what Prescribed.v defines; {a}, {b} and {c} are vehicles. ``at_most``: two
-    parameters of which the first is supposed not to exceed the second.
+    In ``motion``, {p} is the prefix of names from Prescribed.v; {a}, {b} and {c} are vehicles. ``at_most``:
+    two parameters of which the first must not exceed the second.
     """
 
     theorem: str
@@ -50,15 +50,16 @@ class _Entry:
     at_most: tuple[str, str] | None = None
 
     def of(self, vehicles: Sequence[str], prefix: str = "") -> str:
-        """The motion of these vehicles."""
+        """Return the motion of these vehicles."""
         return self.motion.format(p=prefix, a=vehicles[0], b=vehicles[1], c=vehicles[-1])
 
 
 @dataclass(frozen=True)
 class Boundary:
-    """A ``formula`` about ``vehicles``, SV first: from there on a ``course`` collides, SV driven by a model.
+    """A ``formula`` about ``vehicles``, SV first, that holds in a state exactly if a ``course`` from it
+    collides.
 
-    ``course`` and ``model`` are called as on the command line: ``cut-in``, ``careful``.
+    A model drives SV. ``course`` and ``model`` have their names on the command line: ``cut-in``, ``careful``.
     """
 
     course: str
@@ -69,7 +70,8 @@ class Boundary:
 
 @dataclass(frozen=True)
 class BoundaryTheorem:
-    """``formula`` holds in a state if and only if ``motion`` collides, where all is as ``supposed``.
+    """The theorem that ``formula`` holds in a state if and only if ``motion`` collides, given the
+    ``supposed``.
 
     ``source``: the file for Coq, with the printed formula and the proof.
     """
@@ -85,10 +87,10 @@ class BoundaryTheorem:
 
 @dataclass(frozen=True)
 class BoundaryRuling:
-    """What Coq says of the boundary of a model; ``theorem`` is None where the kernel has none."""
+    """Coq's verdict on the boundary of a model; ``theorem`` is None if the kernel has none."""
 
     model: str
-    word: Word
+    verdict: KernelVerdict
     theorem: BoundaryTheorem | None = None
     reason: Reason = NO_REASON
     axioms: tuple[str, ...] = ()
@@ -96,23 +98,23 @@ class BoundaryRuling:
 
     @property
     def source(self) -> str:
-        """The file for Coq; empty where there is none."""
+        """The file for Coq; empty if there is no theorem."""
         return "" if self.theorem is None else self.theorem.source
 
     def __str__(self) -> str:
-        if self.theorem is None or self.word is not Word.ACCEPTED:
-            return f"kernel: {self.word}  boundary of {self.model}: {self.reason}"
+        if self.theorem is None or self.verdict is not KernelVerdict.ACCEPTED:
+            return f"kernel: {self.verdict}  boundary of {self.model}: {self.reason}"
         axioms = ", ".join(self.axioms) or "none"
         return (
-            f"kernel: {self.word}  boundary of {self.model}, for all states and parameters:\n"
+            f"kernel: {self.verdict}  boundary of {self.model}, for all states and parameters:\n"
             f"  {self.theorem}\n  axioms: {axioms}"
         )
 
 
 def theorem_for(specification: Specification, boundary: Boundary) -> BoundaryTheorem | None:
-    """The theorem about a boundary; None where the kernel has none.
+    """Return the theorem about a boundary; None if the kernel has none.
 
-    Raises ``InputError`` for a formula that is not printed.
+    Raises ``InputError`` for a formula that cannot be printed.
     """
     entry = _entry(boundary.course, boundary.model, specification.options)
     if entry is None:
@@ -120,16 +122,16 @@ def theorem_for(specification: Specification, boundary: Boundary) -> BoundaryThe
     vehicles = boundary.vehicles
     query = read_claim(specification, boundary.formula)
     printer = Printer(formals_of(specification))
-    printed = claim_text(printer, query.formula)
-    words = tuple(printer.vehicle(x) for x in vehicles)
+    claim = claim_text(printer, query.formula)
+    names = tuple(printer.vehicle(x) for x in vehicles)
     bounds = bounds_of(specification, parameters_of(query.formula))
     # The vehicle in the middle of a cut-out says by its place alone when the other is seen.
     places = (0, len(vehicles) - 1)
     source = [
-        *comment_lines([f"{boundary.model}, {boundary.course}:", _said(specification.options)]),
-        *claim_lines(printed, bounds),
+        *comment_lines([f"{boundary.model}, {boundary.course}:", _options_text(specification.options)]),
+        *claim_lines(claim, bounds),
         "",
-        *_theorem(printer, entry, words, [words[x] for x in places]),
+        *_theorem(printer, entry, names, [names[x] for x in places]),
     ]
     return BoundaryTheorem(
         boundary.formula,
@@ -142,74 +144,78 @@ def theorem_for(specification: Specification, boundary: Boundary) -> BoundaryThe
     )
 
 
-def settle(coq: Coq, specification: Specification, boundary: Boundary) -> BoundaryRuling:
-    """What Coq says of a boundary."""
+def judge_boundary(coq: Coq, specification: Specification, boundary: Boundary) -> BoundaryRuling:
+    """Return Coq's ruling on a boundary."""
     model = boundary.model
     theorem = theorem_for(specification, boundary)
     if theorem is None:
-        return BoundaryRuling(model, Word.UNKNOWN, reason=_no_theorem(boundary, specification))
-    ran = coq.run(theorem.source)
-    if ran.code:
-        reason = Why.COQ_SAYS(" ".join(ran.complained.split()))
-        return BoundaryRuling(model, Word.REFUSED, theorem, reason, seconds=ran.seconds)
-    axioms = axioms_of(ran.said)
+        return BoundaryRuling(model, KernelVerdict.UNKNOWN, reason=_no_theorem(boundary, specification))
+    run = coq.run(theorem.source)
+    if run.code:
+        reason = ReasonKind.COQ_SAYS(" ".join(run.errors.split()))
+        return BoundaryRuling(model, KernelVerdict.REFUSED, theorem, reason, seconds=run.seconds)
+    axioms = axioms_of(run.output)
     if axioms is None or set(axioms) - AXIOMS:
-        reason = Why.AXIOMS(", ".join(axioms or ("unknown axioms",)))
-        return BoundaryRuling(model, Word.REFUSED, theorem, reason, seconds=ran.seconds)
-    return BoundaryRuling(model, Word.ACCEPTED, theorem, NO_REASON, axioms, ran.seconds)
+        reason = ReasonKind.AXIOMS(", ".join(axioms or ("unknown axioms",)))
+        return BoundaryRuling(model, KernelVerdict.REFUSED, theorem, reason, seconds=run.seconds)
+    return BoundaryRuling(model, KernelVerdict.ACCEPTED, theorem, NO_REASON, axioms, run.seconds)
 
 
 def _no_theorem(boundary: Boundary, specification: Specification) -> Reason:
-    return Why.NO_THEOREM(boundary.course, _said(specification.options))
+    return ReasonKind.NO_THEOREM(boundary.course, _options_text(specification.options))
 
 
-def _entry(course: str, model: str, options: Mapping[str, str]) -> _Entry | None:
+def _entry(course: str, model: str, options: Mapping[str, str]) -> _BoundaryProof | None:
     aeb, gate, perception, threshold = (options[f"cc_{x}"] for x in _READINGS)
     gated = "no_gate" if gate == "none" else gate
     match course, model:
         case "cut-in", "r157" | "eu1426":
-            return _Entry(f"Boundary.{model}_boundary", _IN.replace("DRIVER", f"{model} W now {{a}}"))
+            return _BoundaryProof(f"Boundary.{model}_boundary", _IN.replace("DRIVER", f"{model} W now {{a}}"))
         case "cut-in", "rss":
-            return _Entry("Responding.rss_boundary", _IN.replace("DRIVER", "rss W now {a}"))
+            return _BoundaryProof("Responding.rss_boundary", _IN.replace("DRIVER", "rss W now {a}"))
         case "cut-in", "careful" if aeb == "none":
             driver = f"careful W now {{p}}by_{perception} {{p}}{gated} {{a}} {{b}}"
-            return _Entry("Boundary.unaided_boundary", _IN.replace("DRIVER", driver))
+            return _BoundaryProof("Boundary.unaided_boundary", _IN.replace("DRIVER", driver))
         case "cut-in", "careful" if aeb != "add" or gate == "none":
             reading = f"{{p}}{_AEB[aeb]} {{p}}by_{perception} {{p}}{gated}"
             driver = f"careful_with_aeb W now {reading} {{a}} {{b}}"
-            return _Entry("Aeb.aeb_boundary", _IN.replace("DRIVER", driver), ("cc_braking", "aeb_braking"))
+            return _BoundaryProof(
+                "Aeb.aeb_boundary", _IN.replace("DRIVER", driver), ("cc_braking", "aeb_braking")
+            )
         case "cut-out", "careful":
             motion = "{p}cut_out W now ({p}careful_behind W now {a}) {a} {b} {c}"
-            return _Entry("Boundary.cut_out_boundary", motion)
+            return _BoundaryProof("Boundary.cut_out_boundary", motion)
         case "deceleration", "careful":
             only_hard = str(threshold == "hard").lower()
             driver = f"careful_following W now {only_hard} {{a}} {{b}}"
-            return _Entry("Following.following_boundary", _BEHIND.replace("DRIVER", driver))
+            return _BoundaryProof("Following.following_boundary", _BEHIND.replace("DRIVER", driver))
         case "deceleration", "rss":
             driver = "rss_following W now {a}"
-            return _Entry("Responding.rss_following_boundary", _BEHIND.replace("DRIVER", driver))
-        case _:
+            return _BoundaryProof("Responding.rss_following_boundary", _BEHIND.replace("DRIVER", driver))
+        case _:  # open: courses and models for which the kernel has no theorem
             return None
 
 
-def _theorem(printer: Printer, entry: _Entry, words: Sequence[str], forward: Sequence[str]) -> Iterator[str]:
+def _theorem(
+    printer: Printer, entry: _BoundaryProof, names: Sequence[str], moving_forward: Sequence[str]
+) -> Iterator[str]:
     yield "Theorem proved : forall (W : world) (named : string -> element W) (now : R), respects W bounds ->"
-    for word in forward:
+    for word in moving_forward:
         yield f"  (0 <= Prescribed.speed W now {word})%R ->"
     if entry.at_most is not None:
         low, high = map(literal, entry.at_most)
         yield f"  (parameter W {low} <= parameter W {high})%R ->"
-    yield f"  (holds W named (unbound W) now claim <-> {entry.of(words, 'Prescribed.')})."
+    yield f"  (holds W named (unbound W) now claim <-> {entry.of(names, 'Prescribed.')})."
     yield "Proof."
     yield "  intros W named now B. unfold respects, bounds in B. Roadproof.Reading.bounds_in B. intros."
     yield f"  eapply iff_trans; [|apply Roadproof.{entry.theorem}; repeat split; assumption]."
-    printed = [x.split()[1] for x in (*printer.things, *printer.definitions)]
-    unfolded = " ".join(x for x in printed if x not in words)
+    printed_names = [x.split()[1] for x in (*printer.things, *printer.definitions)]
+    unfolded = " ".join(x for x in printed_names if x not in names)
     yield from wrapped(f"  cbv beta iota zeta delta [claim {unfolded}].")
     yield "  Roadproof.Reading.reads."
     yield "Qed."
     yield "Print Assumptions proved."
 
 
-def _said(options: Mapping[str, str]) -> str:
+def _options_text(options: Mapping[str, str]) -> str:
     return ", ".join(f"{x}={y}" for x, y in sorted(options.items()) if x.startswith("cc_"))

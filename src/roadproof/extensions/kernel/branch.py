@@ -1,7 +1,7 @@
-"""What the search for a tableau knows: the goal, branches with their facts, and what a step would do to one.
+"""The state of the search for a tableau: the goal, branches with their facts, and steps that extend a branch.
 
-A branch holds facts, each true or false at a moment; the constraints on moments are in ``Linear``, added and
-taken back as the search goes.
+A branch holds facts, each true or false at a moment. The constraints on moments are in ``LinearConstraints``;
+the search adds and retracts them.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -12,8 +12,8 @@ from typing import TypeAlias
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.sites import Site
 from roadproof.evidence.times import Moment, read_moment
-from roadproof.extensions.kernel.linear import GOAL, Linear, Witness
-from roadproof.extensions.kernel.tableau import Argument, Node
+from roadproof.extensions.kernel.linear import GOAL, LinearConstraints, Witness
+from roadproof.extensions.kernel.tableau import Argument, TableauNode
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.reasons import Reason
@@ -21,7 +21,7 @@ from roadproof.runtime.records import dataclass
 
 
 class NotFoundError(Exception):
-    """No tableau was found, for this reason."""
+    """The search found no tableau, for this reason."""
 
     def __init__(self, reason: Reason) -> None:
         super().__init__(reason)
@@ -30,10 +30,10 @@ class NotFoundError(Exception):
 
 @dataclass(frozen=True)
 class Goal:
-    """What is to be proved, abstracted, and what may be used.
+    """The abstracted claim to prove, and the facts that the proof may use.
 
-    ``lemmas``: facts about one instant, with the moments at which they are used. ``strict`` says of each
-    bounded parameter whether it is above 0, or at least 0.
+    ``lemmas``: facts about one instant, with the moments of their use. ``strict``: for each bounded
+    parameter, whether it is above 0 or at least 0.
     """
 
     claim: Formula
@@ -47,22 +47,22 @@ class Goal:
 
 
 @dataclass(frozen=True)
-class Step:
-    """A rule of the tableau, with facts and constraints by their numbers in the search.
+class TableauStep:
+    """A rule of the tableau; facts and constraints have their numbers in the search.
 
-    ``new``: a moment that it names; ``added``: numbers of facts and of constraints that each child has.
+    ``new``: a moment that the rule names. ``added``: the numbers of facts and constraints of each child.
     """
 
     rule: str
     arguments: tuple["int | str | Moment | Witness", ...]
-    children: tuple["Step", ...] = ()
+    children: tuple["TableauStep", ...] = ()
     added: tuple[tuple[tuple[int, ...], tuple[int, ...]], ...] = ()
     new: str = ""
 
 
 @dataclass(frozen=True)
-class At:
-    """``formula`` is true, or false, at ``moment``."""
+class TruthAt:
+    """The fact that ``formula`` is true (``sign``) or false at ``moment``."""
 
     sign: bool
     moment: Moment
@@ -71,7 +71,7 @@ class At:
 
 @dataclass(frozen=True)
 class TrueInterval:
-    """``formula`` is true from ``low`` on and before ``high``."""
+    """The fact that ``formula`` is true from ``low`` on and before ``high``."""
 
     low: Moment
     high: Moment
@@ -81,62 +81,64 @@ class TrueInterval:
 
 @dataclass(frozen=True)
 class Belongs:
-    """The element called ``name`` is, or is not, in ``domain``."""
+    """The fact that the element ``name`` is, or is not, in ``domain``."""
 
     sign: bool
     domain: f.Domain
     name: str
 
 
-Fact: TypeAlias = At | TrueInterval | Belongs
+Fact: TypeAlias = TruthAt | TrueInterval | Belongs
 # What one child of a rule is given: facts, and constraints, strict where True.
-Given: TypeAlias = tuple[Sequence[Fact], Sequence[tuple[bool, Moment]]]
+ChildFacts: TypeAlias = tuple[Sequence[Fact], Sequence[tuple[bool, Moment]]]
 # A proof of a branch: its step, and the facts and constraints that it uses.
-Proof: TypeAlias = tuple[Step, frozenset[int]]
+Proof: TypeAlias = tuple[TableauStep, frozenset[int]]
 Guards: TypeAlias = tuple[Witness, Witness]
 
 
 @dataclass(frozen=True)
 class Move:
-    """A rule that is to be applied: what it is told, what it rests on, and what each child is given.
+    """A rule to apply: its arguments, its premises, and the facts and constraints of each child.
 
-    ``new``: a moment that it names; it is known in the last child.
+    ``new``: a moment that the rule names; it is known in the last child.
     """
 
     rule: str
     arguments: tuple[int | str | Moment | Witness, ...]
     premises: Collection[int]
-    sides: Sequence[Given]
+    sides: Sequence[ChildFacts]
     new: str = ""
 
 
 @dataclass
-class Universal:
-    """What may be instantiated: a fact, or a lemma by its place, and what it is still to be tried with."""
+class PendingUniversal:
+    """A fact or lemma that can be instantiated, and the moments or elements that are still to be tried."""
 
     kind: str  # all, until, road, lemma
     number: int
     site: Site | None
     left: list[Moment | str]
 
-    def copy(self) -> "Universal":
-        return Universal(self.kind, self.number, self.site, list(self.left))
+    def copy(self) -> "PendingUniversal":
+        """Return a copy that can be changed independently."""
+        return PendingUniversal(self.kind, self.number, self.site, list(self.left))
 
 
 @dataclass
 class Branch:
-    """``agenda``: facts that are to be read; ``choices``: disjunctions that are to be divided."""
+    """A branch of the tableau; ``agenda``: facts to read, ``choices``: disjunctions to split."""
 
     facts: dict[int, Fact] = field(default_factory=dict)
     known: dict[Formula, list[tuple[bool, Moment, int]]] = field(default_factory=dict)
     agenda: list[int] = field(default_factory=list)
     choices: list[int] = field(default_factory=list)
-    universals: list[Universal] = field(default_factory=list)
+    universals: list[PendingUniversal] = field(default_factory=list)
     times: set[str] = field(default_factory=set)
     elements: set[str] = field(default_factory=set)
     decided: dict[tuple[int, Moment], Guards] = field(default_factory=dict)
 
     def copy(self) -> "Branch":
+        """Return a copy that can be changed independently."""
         return Branch(
             dict(self.facts),
             {k: list(v) for k, v in self.known.items()},
@@ -152,14 +154,14 @@ class Branch:
         self.facts[number] = fact
         self.agenda.append(number)
 
-    def at(self, number: int) -> At:
-        """A fact that says what is at a moment."""
+    def at(self, number: int) -> TruthAt:
+        """Return a fact about a moment."""
         fact = self.facts[number]
-        assert isinstance(fact, At)
+        assert isinstance(fact, TruthAt)
         return fact
 
-    def waiting(self, *kinds: str) -> Iterator[tuple[Universal, Moment]]:
-        """Moments that have names here and that universals of these kinds are still to be tried with."""
+    def waiting(self, *kinds: str) -> Iterator[tuple[PendingUniversal, Moment]]:
+        """Yield the known moments with which universals of these kinds are still to be instantiated."""
         for universal in self.universals:
             if universal.kind in kinds:
                 for moment in list(universal.left):
@@ -168,11 +170,11 @@ class Branch:
 
 
 @dataclass
-class Means:
-    """What all branches share: the goal, the constraints that stand now, and names and numbers."""
+class SharedState:
+    """The state that all branches share: goal, current constraints, and counters of names and numbers."""
 
     goal: Goal
-    linear: Linear = field(default_factory=Linear)
+    linear: LinearConstraints = field(default_factory=LinearConstraints)
     count: int = 0
     unnamed: int = 0
 
@@ -180,18 +182,19 @@ class Means:
         self.count += 1
         return self.count
 
-    def named(self, site: Site, prefix: str) -> str:
+    def name_for(self, site: Site, prefix: str) -> str:
+        """Return the certificate's name for a quantified time or element, or a new name."""
         if site in self.goal.names:
             return self.goal.names[site]
         self.unnamed += 1
         return f"{prefix}_{self.unnamed}"
 
     def listed(self, site: Site, read: Callable[[str], Moment | str] = read_moment) -> list[Moment | str]:
-        """What the certificate lists for a universal."""
+        """Return the instances that the certificate lists for a universal."""
         return [read(x) for x in self.goal.instances.get(site, ())]
 
     def equal(self, one: Moment, other: Moment) -> Guards | None:
-        """Multipliers that show two moments to be one."""
+        """Return multipliers that prove two moments equal; None if they may differ."""
         if one == other:
             trivial: Witness = ((GOAL, Fraction(1)),)
             return trivial, trivial
@@ -202,13 +205,13 @@ class Means:
         return None if most is None else (least, most)
 
 
-def used(*witnesses: Witness) -> frozenset[int]:
-    """The constraints that multipliers speak of, but for what was asked."""
+def constraints_in(*witnesses: Witness) -> frozenset[int]:
+    """Return the constraints in multipliers, without the goal."""
     return frozenset(number for witness in witnesses for number, _ in witness if number != GOAL)
 
 
-def two(formula: f.And | f.Or) -> tuple[Formula, ...]:
-    """A first part and the rest, as Coq has them: p and (q and r)."""
+def first_and_rest(formula: f.And | f.Or) -> tuple[Formula, ...]:
+    """Return the first part and the rest, in Coq's form: p and (q and r)."""
     first, *rest = formula.parts
     if not rest:
         return (first,)
@@ -218,10 +221,12 @@ def two(formula: f.And | f.Or) -> tuple[Formula, ...]:
 # --- the same numbered as Tableau.v numbers them ----------------------------------------------------
 
 
-def numbered(step: Step, root: int, bounds: Sequence[int], parameters: Sequence[str]) -> Iterator[Node]:
-    """The nodes of a tableau: facts, constraints and moments are numbered as a branch comes to have them.
+def number_nodes(
+    step: TableauStep, root: int, bounds: Sequence[int], parameters: Sequence[str]
+) -> Iterator[TableauNode]:
+    """Yield the nodes of a tableau, with facts, constraints and moments numbered in the order of each branch.
 
-    ``root`` is the fact that it begins with; ``bounds``: the constraints on parameters, in their order.
+    ``root``: the first fact. ``bounds``: the constraints on parameters, in their order.
     """
     # Tableau.v counts from the end of a list, and has bounds in their order.
     constraints = {number: place for place, number in enumerate(reversed(bounds))}
@@ -230,14 +235,14 @@ def numbered(step: Step, root: int, bounds: Sequence[int], parameters: Sequence[
 
 
 def _nodes(
-    step: Step,
+    step: TableauStep,
     facts: Mapping[int, int],
     facts_count: int,
     constraints: Mapping[int, int],
     constraints_count: int,
     times: Mapping[str, int],
     next_time: int,
-) -> Iterator[Node]:
+) -> Iterator[TableauNode]:
     known = dict(times)
     for argument in step.arguments:
         if isinstance(argument, Moment):
@@ -261,7 +266,7 @@ def _nodes(
     if step.new:
         arguments.append(next_time)
         inside[step.new] = next_time
-    yield Node(step.rule, tuple(arguments))
+    yield TableauNode(step.rule, tuple(arguments))
     for place, (child, (new_facts, new_constraints)) in enumerate(
         zip(step.children, step.added, strict=True)
     ):

@@ -1,8 +1,8 @@
-"""What contradicts among polynomial constraints: products of them, with multipliers, that add up to 0 < 0.
+"""Contradictions of polynomial constraints: weighted products of them that add up to 0 < 0.
 
 Products of a few constraints, squares, and equations times monomials are the columns of a linear program
-(Handelman; Positivstellensatz of low degree). It is solved in floats; which columns are used is taken from
-there, and their multipliers are computed exactly. Not trusted: Coq adds the products up again.
+(Handelman; Positivstellensatz of low degree). It is solved in floats to find the columns to use; their
+multipliers are then computed exactly. Not trusted: Coq adds the products up again.
 """
 
 from collections import Counter
@@ -19,21 +19,21 @@ from roadproof.world.polynomial import Polynomial, constant
 
 # Variables by number, in order and repeated for powers; the empty one is 1.
 Monomial: TypeAlias = tuple[int, ...]
-Kind: TypeAlias = Literal["above", "at least", "zero"]
+ConstraintKind: TypeAlias = Literal["above", "at least", "zero"]
 MOST_COLUMNS = 4000
 FEW_VARIABLES = 6  # with so many, squares of sums of products are tried too
 _SMALL = 1e-7
 
 
 def coq(polynomial: Polynomial[int]) -> str:
-    """As a term of Products.v."""
+    """Return a polynomial as a term of Products.v."""
     terms = sorted(polynomial.terms.items(), key=lambda x: sorted(Counter(x[0]).items()))
     shown = [joined("mul_", _factors(m, q)) for m, q in terms]
     return joined("add_", shown or ["(c_ 0 1)"])
 
 
 def joined(word: str, parts: Iterable[str]) -> str:
-    """A word of Products.v for two parts, applied to several: the first two, then the next."""
+    """Return a binary operator of Products.v applied to several parts, from the left."""
     return reduce(lambda one, other: f"({word} {one} {other})", parts)
 
 
@@ -46,29 +46,30 @@ def _factors(monomial: Monomial, factor: Fraction) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class Constraint:
-    """``polynomial`` is above 0, at least 0, or 0."""
+    """The condition that ``polynomial`` is above 0, at least 0, or 0."""
 
-    kind: Kind
+    kind: ConstraintKind
     polynomial: Polynomial[int]
 
     @cached_property
     def key(self) -> Hashable:
-        """Equal where constraints are."""
+        """A value that equal constraints share."""
         return self.kind, frozenset(self.polynomial.terms.items())
 
 
 @dataclass(frozen=True)
-class Column:
-    """A product, ``strict`` where it is above 0, ``free`` where it is 0 and may be subtracted.
+class ProductColumn:
+    """A product; ``strict``: it is above 0; ``free``: it is 0, and may be subtracted.
 
-    ``places``: of which constraints. ``written``: with a multiplier, for Coq; constraints as they are told.
+    ``places``: its constraints. ``proof_text``: its text for Coq, given a multiplier and the text of
+    constraints.
     """
 
     polynomial: Polynomial[int]
     strict: bool
     free: bool
     places: tuple[int, ...]
-    written: Callable[[Fraction, Callable[[int], str]], str]
+    proof_text: Callable[[Fraction, Callable[[int], str]], str]
 
     @cached_property
     def floats(self) -> tuple[tuple[Monomial, float], ...]:
@@ -77,39 +78,43 @@ class Column:
 
 
 # Products of constraints that were made before, by places and identities; the constraints stay with them.
-Products: TypeAlias = dict[tuple[tuple[int, int], ...], tuple[Constraint, Column]]
-Parts: TypeAlias = tuple[tuple[Column, Fraction], ...]
+Products: TypeAlias = dict[tuple[tuple[int, int], ...], tuple[Constraint, ProductColumn]]
+Parts: TypeAlias = tuple[tuple[ProductColumn, Fraction], ...]
 
 
 @dataclass(frozen=True)
-class Sum:
+class AbsurdSum:
     """A sum of products that is absurd; ``scales`` make the coefficients of each constraint whole."""
 
     parts: Parts
     scales: tuple[Fraction, ...]
 
-    def written(self) -> str:
-        """For Coq, in whole numbers, which it adds and multiplies much faster than others.
+    def proof_text(self) -> str:
+        """Return the text for Coq, in whole numbers, which Coq adds and multiplies much faster.
 
-        The last constraint is number 0 there.
+        The last constraint has number 0 there.
         """
         multipliers = [q / prod(self.scales[place] for place in x.places) for x, q in self.parts]
         whole = whole_factor(multipliers)
-        shown = [x.written(q * whole, self._given) for (x, _), q in zip(self.parts, multipliers, strict=True)]
-        found = shown[-1]
-        for part in reversed(shown[:-1]):
-            found = f"(sum_ {part} {found})"
-        return found
+        printed = [
+            x.proof_text(q * whole, self._given) for (x, _), q in zip(self.parts, multipliers, strict=True)
+        ]
+        total = printed[-1]
+        for part in reversed(printed[:-1]):
+            total = f"(sum_ {part} {total})"
+        return total
 
     def _given(self, place: int) -> str:
-        told = f"(given_ {len(self.scales) - 1 - place})"
-        return told if self.scales[place] == 1 else f"(product_ {number(self.scales[place])} {told})"
+        constraint = f"(given_ {len(self.scales) - 1 - place})"
+        return (
+            constraint if self.scales[place] == 1 else f"(product_ {number(self.scales[place])} {constraint})"
+        )
 
 
 def whole_factor(numbers: Iterable[Fraction]) -> Fraction:
-    """What makes them whole numbers without a common factor; 1 where there are none but 0."""
-    found = [q for q in numbers if q]
-    return Fraction(lcm(*(q.denominator for q in found)), gcd(*(q.numerator for q in found)) or 1)
+    """Return the factor that makes numbers whole and coprime; 1 if all are 0."""
+    nonzero = [q for q in numbers if q]
+    return Fraction(lcm(*(q.denominator for q in nonzero)), gcd(*(q.numerator for q in nonzero)) or 1)
 
 
 def number(value: Fraction) -> str:
@@ -117,89 +122,91 @@ def number(value: Fraction) -> str:
 
 
 def contradiction(
-    constraints: Sequence[Constraint], level: int, known: Products | None = None
-) -> tuple[Sum | None, int]:
-    """A sum of products of at most ``level`` constraints that is absurd, None where none is found; and the
-    number of products that were looked at, which is the work that it took.
+    constraints: Sequence[Constraint], level: int, products: Products | None = None
+) -> tuple[AbsurdSum | None, int]:
+    """Return an absurd sum of products of at most ``level`` constraints, or None, and the number of columns.
 
-    ``known``: products that cases of one question share; new ones are added.
+    That number measures the work. ``products``: products that cases of one question share; new ones are
+    added.
     """
     signed = sum(x.kind != "zero" for x in constraints)
     if sum(comb(signed + count - 1, count) for count in range(1, level + 1)) >= MOST_COLUMNS:
         return None, MOST_COLUMNS + 1
-    columns = list(islice(_columns(constraints, level, {} if known is None else known), MOST_COLUMNS + 1))
+    columns = list(
+        islice(_columns(constraints, level, {} if products is None else products), MOST_COLUMNS + 1)
+    )
     if len(columns) > MOST_COLUMNS:
         return None, len(columns)
     try:
-        parts = solved(columns)
+        parts = solve_multipliers(columns)
     except OverflowError:  # a number that no float has
         return None, len(columns)
     scales = tuple(whole_factor(x.polynomial.terms.values()) for x in constraints)
-    return Sum(parts, scales) if parts is not None else None, len(columns)
+    return AbsurdSum(parts, scales) if parts is not None else None, len(columns)
 
 
-def _columns(constraints: Sequence[Constraint], level: int, known: Products) -> Iterator[Column]:
-    one = Column(constant(Fraction(1)), True, False, (), lambda q, _: number(q))
+def _columns(constraints: Sequence[Constraint], level: int, products: Products) -> Iterator[ProductColumn]:
+    one = ProductColumn(constant(Fraction(1)), True, False, (), lambda q, _: number(q))
     yield one
     signed = [(place, x) for place, x in enumerate(constraints) if x.kind != "zero"]
     keys = {place: (place, id(x)) for place, x in signed}
     made = [one]
     for _ in range(level):
-        longer: list[Column] = []
+        longer: list[ProductColumn] = []
         for column in made:
             before = tuple(keys[place] for place in column.places)
-            for place, x in signed:
+            for place, constraint in signed:
                 if column.places and place < column.places[-1]:
                     continue
                 key = (*before, keys[place])
-                if key not in known:
-                    known[key] = x, _product(column, place, x)
-                longer.append(known[key][1])
+                if key not in products:
+                    products[key] = constraint, _product(column, place, constraint)
+                longer.append(products[key][1])
         yield from longer
         made = longer
     variables = sorted({v for x in constraints for v in x.polynomial.variables})
-    for place, x in enumerate(constraints):
-        if x.kind == "zero":
+    for place, constraint in enumerate(constraints):
+        if constraint.kind == "zero":
             for monomial in monomials(variables, level if level > 1 else 0):
-                yield _equation(place, x.polynomial * Polynomial({monomial: Fraction(1)}), monomial)
+                yield _equation(place, constraint.polynomial * Polynomial({monomial: Fraction(1)}), monomial)
     if level > 1:
         degree = 2 if level > 2 and len(variables) <= FEW_VARIABLES else 1
         yield from _squares(tuple(variables), degree)
 
 
 @lru_cache(maxsize=32)
-def _squares(variables: tuple[int, ...], degree: int) -> tuple[Column, ...]:
-    """Squares of monomials of at most that degree, of their differences and sums."""
+def _squares(variables: tuple[int, ...], degree: int) -> tuple[ProductColumn, ...]:
+    """Return the squares of monomials of at most that degree, of their differences and of their sums."""
     roots = [Polynomial({m: Fraction(1)}) for m in monomials(variables, degree)]
     of_two = ((one - other, one + other) for one, other in combinations(roots, 2))
     return tuple(map(_square, (*roots, *(x for both in of_two for x in both))))
 
 
-def _product(column: Column, place: int, times: Constraint) -> Column:
+def _product(column: ProductColumn, place: int, times: Constraint) -> ProductColumn:
     places, strict = (*column.places, place), column.strict and times.kind == "above"
 
-    def written(q: Fraction, given: Callable[[int], str]) -> str:
+    def proof_text(q: Fraction, given: Callable[[int], str]) -> str:
         return f"(product_ {number(q)} {joined('product_', map(given, places))})"
 
-    return Column(column.polynomial * times.polynomial, strict, False, places, written)
+    return ProductColumn(column.polynomial * times.polynomial, strict, False, places, proof_text)
 
 
-def _equation(place: int, product: Polynomial[int], factor: Monomial) -> Column:
-    def written(q: Fraction, given: Callable[[int], str]) -> str:
+def _equation(place: int, product: Polynomial[int], factor: Monomial) -> ProductColumn:
+    def proof_text(q: Fraction, given: Callable[[int], str]) -> str:
         return f"(times_ {coq(Polynomial({factor: q}))} {given(place)})"
 
-    return Column(product, False, True, (place,), written)
+    return ProductColumn(product, False, True, (place,), proof_text)
 
 
-def _square(root: Polynomial[int]) -> Column:
-    def written(q: Fraction, given: Callable[[int], str]) -> str:
+def _square(root: Polynomial[int]) -> ProductColumn:
+    def proof_text(q: Fraction, given: Callable[[int], str]) -> str:
         return f"(product_ {number(q)} (square_ {coq(root)}))"
 
-    return Column(root * root, False, False, (), written)
+    return ProductColumn(root * root, False, False, (), proof_text)
 
 
 def monomials(variables: Sequence[int], degree: int) -> Iterator[Monomial]:
-    """Those of at most that degree."""
+    """Yield the monomials of at most that degree."""
     for size in range(degree + 1):
         yield from combinations_with_replacement(variables, size)
 
@@ -207,53 +214,53 @@ def monomials(variables: Sequence[int], degree: int) -> Iterator[Monomial]:
 # --- multipliers ---------------------------------------------------------------------------------
 
 
-def solved(columns: Sequence[Column]) -> Parts | None:
-    """Multipliers whose sum is 0, those of what is above 0 adding up to 1."""
+def solve_multipliers(columns: Sequence[ProductColumn]) -> Parts | None:
+    """Return multipliers of columns that add up to 0, with strict ones adding up to 1; None if none."""
     from scipy.optimize import linprog
     from scipy.sparse import csr_array
 
     rows: dict[Monomial, int] = {}
     entries: list[tuple[int, int, float]] = []
-    for place, x in enumerate(columns):
-        for monomial, factor in x.floats:
+    for place, column in enumerate(columns):
+        for monomial, factor in column.floats:
             entries.append((rows.setdefault(monomial, len(rows) + 1), place, factor))
-        if x.strict:
+        if column.strict:
             entries.append((0, place, 1.0))
     shape = (len(rows) + 1, len(columns))
     matrix = csr_array(([e[2] for e in entries], ([e[0] for e in entries], [e[1] for e in entries])), shape)
-    found = linprog(
+    solution = linprog(
         [0.0 if x.free else 1.0 for x in columns],
         A_eq=matrix,
         b_eq=[1.0] + [0.0] * len(rows),
         bounds=[(None, None) if x.free else (0, None) for x in columns],
         method="highs-ds",
     )
-    if found.status != 0:
+    if solution.status != 0:
         return None
-    used = [columns[place] for place, x in enumerate(found.x) if abs(x) > _SMALL]
-    return _exactly(used)
+    columns_used = [columns[place] for place, x in enumerate(solution.x) if abs(x) > _SMALL]
+    return _exact_multipliers(columns_used)
 
 
-def _exactly(used: Sequence[Column]) -> Parts | None:
-    """The multipliers of these columns in rationals; None where they are not what floats said."""
+def _exact_multipliers(used: Sequence[ProductColumn]) -> Parts | None:
+    """Return the rational multipliers of these columns; None if the floats were misleading."""
     rows: dict[Monomial | None, dict[int, Fraction]] = {None: {}}
-    for place, x in enumerate(used):
-        for monomial, factor in x.polynomial.terms.items():
+    for place, column in enumerate(used):
+        for monomial, factor in column.polynomial.terms.items():
             rows.setdefault(monomial, {})[place] = factor
-        if x.strict:
+        if column.strict:
             rows[None][place] = Fraction(1)
     rows[None][len(used)] = Fraction(1)  # the right hand side
-    found = eliminated(list(rows.values()), len(used))
-    if found is None:
+    solution = solve_linear(list(rows.values()), len(used))
+    if solution is None:
         return None
-    parts = [(x, found.get(place, Fraction(0))) for place, x in enumerate(used)]
+    parts = [(x, solution.get(place, Fraction(0))) for place, x in enumerate(used)]
     if any(q < 0 and not x.free for x, q in parts):
         return None
     return tuple((x, q) for x, q in parts if q)
 
 
-def eliminated(rows: list[dict[int, Fraction]], last: int) -> Mapping[int, Fraction] | None:
-    """A solution of linear equations, None where there is none; ``last`` is the right hand side."""
+def solve_linear(rows: list[dict[int, Fraction]], last: int) -> Mapping[int, Fraction] | None:
+    """Return a solution of linear equations, or None; ``last`` is the right hand side."""
     pivots = echelon(rows, last)
     if pivots is None:
         return None
@@ -261,7 +268,7 @@ def eliminated(rows: list[dict[int, Fraction]], last: int) -> Mapping[int, Fract
 
 
 def echelon(rows: Iterable[Mapping[int, Fraction]], last: int) -> dict[int, dict[int, Fraction]] | None:
-    """Linear equations solved: each row by the variable that stands in no other. None: no solution."""
+    """Return linear equations in reduced form, each row by its pivot variable; None if contradictory."""
     pivots: dict[int, dict[int, Fraction]] = {}
     for row in rows:
         current = dict(row)

@@ -1,7 +1,7 @@
 """Formulas and terms as the constructors of proofs/kernel/Meaning.v. Trusted with ``--kernel extracted``.
 
-The text is that of ``proofs/kernel/ocaml/reader.ml``, and Coq reads terms of it, too. A definition that is
-applied to things of the claim is written once, under a name such as "danger(SV, POV)".
+The text is that of ``proofs/kernel/ocaml/reader.ml``; Coq reads terms in this form, too. A definition with
+its arguments is written once, under a name such as "danger(SV, POV)".
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ from roadproof.extensions.kernel.world import WORDS_OF_SIGNALS
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.node import once
+from roadproof.logic.node import memoised
 from roadproof.logic.rewrite import free_roads
 from roadproof.logic.terms import Term
 
@@ -25,7 +25,7 @@ _OUTSIDE: Mapping[str, int] = {}
 
 
 def term(x: Term) -> str:
-    """A term in brackets. Raises ``InputError`` for what Meaning.v has no constructor for."""
+    """Return a term in brackets. Raises ``InputError`` if Meaning.v has no constructor for it."""
     match x:
         case t.Number(value, _):
             return f"(Num {q(value)})"
@@ -37,7 +37,7 @@ def term(x: Term) -> str:
             return f"(Sig {WORDS_OF_SIGNALS[name]} {literal(vehicle)})"
         case t.Size():
             return f"(Siz {size(x)})"
-        case t.Own():
+        case t.CustomSignal():
             return f"(Sig (Own {literal(x.name)}) {quoted(x.vehicle)})"
         case t.Sum(parts):
             return _folded("Add", parts)
@@ -60,34 +60,34 @@ def term(x: Term) -> str:
 
 
 def size(x: t.Size) -> str:
-    """Length "SV"."""
+    """Return the text of a size: Length "SV"."""
     return f"{_SIZES[x.name]} {literal(x.vehicle)}"
 
 
 def _folded(word: str, parts: Sequence[Term]) -> str:
-    """max(max(x, y), z)."""
+    """Return a binary constructor applied from the left: max(max(x, y), z)."""
     if not parts:
         raise InputError(f"{word} of nothing is not written")
     return reduce(lambda one, other: f"({word} {one} {other})", map(term, parts))
 
 
-@once
+@memoised
 def _height(formula: Formula) -> int:
-    """As ``height`` of Meaning.v: the number of a quantifier is that of its body."""
+    """Return ``height`` of Meaning.v: the number of a quantifier is that of its body."""
     inside = max(map(_height, f.children(formula)), default=0)
     return max(inside, _height(formula.body) + 1) if isinstance(formula, f.Some | f.Every) else inside
 
 
 @dataclass
 class Writer:
-    """Writes formulas; ``definitions`` are those that they name, each after those that it names."""
+    """A writer of formulas; ``definitions``: those that they name, each after those that it uses."""
 
     definitions: list[str] = field(default_factory=list)
     names: dict[Formula, str] = field(default_factory=dict)
     taken: set[str] = field(default_factory=set)
 
     def formula(self, formula: Formula, bound: Mapping[str, int] = _OUTSIDE) -> str:
-        """``bound``: the numbers of the quantifiers around it, by the name that each binds."""
+        """Return a formula in brackets; ``bound``: the numbers of enclosing quantifiers, by variable."""
         match formula:
             case f.Truth(value):
                 return f"(Truth {str(value).lower()})"
@@ -117,7 +117,7 @@ class Writer:
                 assert_never(formula)
 
     def _joined(self, formula: f.And | f.Or, parts: Sequence[Formula], bound: Mapping[str, int]) -> str:
-        """p and q and r is p and (q and r)."""
+        """Return a conjunction or disjunction of two: p and q and r is p and (q and r)."""
         if not parts:
             return f"(Truth {str(isinstance(formula, f.And)).lower()})"
         word = type(formula).__name__
@@ -125,17 +125,17 @@ class Writer:
         return reduce(lambda rest, first: f"({word} {first} {rest})", reversed(shown))
 
     def _named(self, named: f.Application) -> str:
-        """The name of a definition with its arguments, written now if it is new."""
+        """Return the name of a definition with its arguments, and write the definition if it is new."""
         if named.body not in self.names:
             body = self.formula(named.body)
-            plain = comment(f"{named.name}({', '.join(named.arguments)})")[:100]
-            found, count = plain, 1
-            while found in self.taken:
+            base = comment(f"{named.name}({', '.join(named.arguments)})")[:100]
+            name, count = base, 1
+            while name in self.taken:
                 count += 1
-                found = f"{plain} {count}"
-            self.taken.add(found)
-            self.names[named.body] = quoted(found)
-            self.definitions.append(f"({quoted(found)} {body})")
+                name = f"{base} {count}"
+            self.taken.add(name)
+            self.names[named.body] = quoted(name)
+            self.definitions.append(f"({quoted(name)} {body})")
         return self.names[named.body]
 
 

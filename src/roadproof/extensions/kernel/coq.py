@@ -1,11 +1,12 @@
-"""``coqc`` as a separate program: the theories compiled once, and files put to it.
+"""``coqc`` as a separate program: it compiles the theories once, and checks files.
 
-Nothing of the evidence that is checked is on Coq's path: it runs in a fresh folder, without settings of the
-user or of the environment, and sees its own library and the theories. Compiled theories are kept in a cache
-of the user, under a name made of their sources and of Coq's version; they count where only the user can write
-there and where they are what was compiled.
+Coq never sees other files of the evidence: it runs in a fresh folder, without settings of the user or the
+environment, with its own library and the theories. Compiled theories are cached for the user, under a digest
+of their sources and Coq's version. The cache is used only if nobody else can write there and its files are
+those that were compiled.
 """
 
+import contextlib
 import hashlib
 import json
 import os
@@ -20,8 +21,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from roadproof.errors import MissingSolverError, RoadproofError
-from roadproof.runtime.cache import is_ours, one_at_a_time, private_folder
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.cache import is_private, private_folder
+from roadproof.runtime.package_data import shipped_folder
 
 THEORIES = (
     *("Meaning", "Text", "Linear", "Tableau", "Products", "Rss", "Instant", "Named", "Values", "Known"),
@@ -31,66 +32,66 @@ THEORIES = (
     *("Programs", "Refuted"),
 )
 APT = "apt-get install -y coq"
-PATIENCE = 1800.0  # seconds for one file; a backstop only
+TIMEOUT = 1800.0  # seconds for one file; a backstop only
 SUMS = "sums.json"
-COMPLAINTS = "complaints.json"  # warnings of each theory
+WARNINGS = "complaints.json"  # warnings of each theory
 _LOADED = (".vo", ".vio")  # Coq takes the newer one
-_KEPT = ("PATH", "HOME", "TMPDIR", "USER", "LOGNAME")
+_ENVIRONMENT = ("PATH", "HOME", "TMPDIR", "USER", "LOGNAME")
 
 
 @dataclass(frozen=True)
 class CoqRun:
-    """What ``coqc`` answered to a file, which is accepted where ``code`` is 0; seconds of the processor."""
+    """The result of a program run; ``code`` 0 means accepted; processor time in s, memory in MB."""
 
     code: int
-    said: str
-    complained: str
+    output: str
+    errors: str
     seconds: float
     megabytes: float = 0.0
 
 
 @dataclass(frozen=True)
 class Coq:
-    """A ``coqc`` and the folder of theories that it has compiled."""
+    """A ``coqc`` and the folder with the theories that it has compiled."""
 
     coqc: str
     version: str
     theories: Path
 
     def run(self, source: str) -> CoqRun:
-        """Put a file to Coq, in a folder of its own."""
+        """Check a source text in a fresh folder."""
         with tempfile.TemporaryDirectory(prefix="roadproof-coq-") as folder:
             file = Path(folder) / "evidence.v"
             file.write_text(source, encoding="ascii")
             return self.in_folder(file.name, Path(folder))
 
     def in_folder(self, name: str, folder: Path) -> CoqRun:
-        """Put a file of a folder to Coq, which writes there."""
+        """Check a file in a folder, where Coq writes its output."""
         return run_program([self.coqc, *_options(self.theories), name], folder)
 
 
-def find() -> tuple[str, str]:
-    """Path and version of ``coqc``. Raises ``MissingSolverError`` where there is none."""
+def find_coqc() -> tuple[str, str]:
+    """Return path and version of ``coqc``. Raises ``MissingSolverError`` if there is none."""
     coqc = shutil.which("coqc")
     if coqc is None:
         raise MissingSolverError(f"coqc is not on the path: install Coq 8.16 or later, such as by {APT}")
-    ran = run_program([coqc, "--print-version"], Path.cwd())
-    found = re.match(r"(\d+)\.(\d+)\S*", ran.said)
-    if ran.code or found is None:
+    run = run_program([coqc, "--print-version"], Path.cwd())
+    match = re.match(r"(\d+)\.(\d+)\S*", run.output)
+    if run.code or match is None:
         raise MissingSolverError(f"{coqc} does not say its version: install Coq again, such as by {APT}")
-    if (int(found[1]), int(found[2])) < (8, 16):
-        raise MissingSolverError(f"{coqc} is version {found[0]}; 8.16 or later is needed: {APT}")
-    return coqc, found[0]
+    if (int(match[1]), int(match[2])) < (8, 16):
+        raise MissingSolverError(f"{coqc} is version {match[0]}; 8.16 or later is needed: {APT}")
+    return coqc, match[0]
 
 
 @contextmanager
 def ready() -> Iterator[Coq]:
-    """Coq with compiled theories.
+    """Yield Coq with compiled theories.
 
-    Raises ``MissingSolverError``, and ``RoadproofError`` where they do not compile.
+    Raises ``MissingSolverError``, and ``RoadproofError`` if the theories do not compile.
     """
-    coqc, version = find()
-    sources = {name: shipped("proofs") / "kernel" / f"{name}.v" for name in THEORIES}
+    coqc, version = find_coqc()
+    sources = {name: shipped_folder("proofs") / "kernel" / f"{name}.v" for name in THEORIES}
     texts = {name: path.read_bytes() for name, path in sources.items()}
     key = hashlib.sha256(
         json.dumps([coqc, version, {n: _sum(x) for n, x in texts.items()}]).encode()
@@ -110,16 +111,16 @@ def ready() -> Iterator[Coq]:
 
 
 def _compile_into(place: Path, coqc: str, texts: Mapping[str, bytes]) -> None:
-    """Compile into a folder of the cache, which is there whole or not at all."""
-    making = Path(tempfile.mkdtemp(prefix=".making-", dir=place.parent))
+    """Compile into a folder of the cache, atomically."""
+    folder = Path(tempfile.mkdtemp(prefix=".making-", dir=place.parent))
     try:
-        _compile(coqc, texts, making)
+        _compile(coqc, texts, folder)
         shutil.rmtree(place, ignore_errors=True)
-        os.rename(making, place)
+        os.rename(folder, place)
     except OSError as error:
         raise RoadproofError(f"cannot write {place}: {error.strerror}") from None
     finally:
-        shutil.rmtree(making, ignore_errors=True)
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _compile(coqc: str, texts: Mapping[str, bytes], folder: Path) -> None:
@@ -127,11 +128,11 @@ def _compile(coqc: str, texts: Mapping[str, bytes], folder: Path) -> None:
         (folder / f"{name}.v").write_bytes(text)
     complaints = {}
     for name in texts:
-        ran = run_program([coqc, *_options(folder), f"{name}.v"], folder)
-        if ran.code:
-            raise RoadproofError(f"proofs/kernel/{name}.v is not accepted by coqc: {ran.complained[:400]}")
-        complaints[name] = ran.complained
-    (folder / COMPLAINTS).write_text(json.dumps(complaints), encoding="ascii")
+        run = run_program([coqc, *_options(folder), f"{name}.v"], folder)
+        if run.code:
+            raise RoadproofError(f"proofs/kernel/{name}.v is not accepted by coqc: {run.errors[:400]}")
+        complaints[name] = run.errors
+    (folder / WARNINGS).write_text(json.dumps(complaints), encoding="ascii")
     sums = {f"{name}.vo": _sum((folder / f"{name}.vo").read_bytes()) for name in texts}
     (folder / SUMS).write_text(json.dumps(sums), encoding="ascii")
 
@@ -140,40 +141,41 @@ def _options(theories: Path) -> list[str]:
     return ["-q", "-noglob", "-Q", str(theories), "Roadproof"]
 
 
-def run_program(command: list[str], folder: Path, given: bytes = b"") -> CoqRun:
-    """Run in ``folder`` without what the environment says to Coq; ``given`` stands on standard input."""
-    begun = _processor_seconds()
-    environment = {name: os.environ[name] for name in _KEPT if name in os.environ} | {"LC_ALL": "C"}
+def run_program(command: list[str], folder: Path, stdin: bytes = b"") -> CoqRun:
+    """Run a command in ``folder`` with a minimal environment; ``stdin``: its standard input."""
+    start = _processor_seconds()
+    environment = {name: os.environ[name] for name in _ENVIRONMENT if name in os.environ} | {"LC_ALL": "C"}
     try:
-        ran = subprocess.run(
+        process = subprocess.run(
             command,
             cwd=folder,
             env=environment,
-            input=given,
+            input=stdin,
             capture_output=True,
-            timeout=PATIENCE,
+            timeout=TIMEOUT,
             check=False,
             preexec_fn=_deep_stack,
         )
     except subprocess.TimeoutExpired:
-        return CoqRun(-1, "", f"no answer after {PATIENCE:g} s", _processor_seconds() - begun)
-    told = [x.decode("utf-8", "replace") for x in (ran.stdout, ran.stderr)]
-    held = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024  # of the largest child so far
-    return CoqRun(ran.returncode, told[0], told[1], _processor_seconds() - begun, held)
+        return CoqRun(-1, "", f"no answer after {TIMEOUT:g} s", _processor_seconds() - start)
+    streams = [x.decode("utf-8", "replace") for x in (process.stdout, process.stderr)]
+    megabytes = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024  # of the largest child so far
+    return CoqRun(process.returncode, streams[0], streams[1], _processor_seconds() - start, megabytes)
 
 
 def _processor_seconds() -> float:
-    """Of all programs that this process has run and waited for."""
+    """Return the processor time of all finished child processes."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
 def _deep_stack() -> None:
-    """Large formulas are deep terms; Coq reads them by recursion."""
-    most = resource.getrlimit(resource.RLIMIT_STACK)[1]
-    wanted = 1 << 30
+    """Raise the stack limit: large formulas are deep terms, which Coq reads recursively."""
+    limit = resource.getrlimit(resource.RLIMIT_STACK)[1]
+    stack_size = 1 << 30
     resource.setrlimit(
-        resource.RLIMIT_STACK, (wanted if most == resource.RLIM_INFINITY else min(wanted, most), most)
+        resource.RLIMIT_STACK,
+        (stack_size if limit == resource.RLIM_INFINITY else min(stack_size, limit), limit),
     )
 
 
@@ -181,14 +183,14 @@ def _deep_stack() -> None:
 
 
 def _is_sound(folder: Path) -> bool:
-    """Whether all compiled theories are there, as they were compiled, and no others."""
-    if not is_ours(folder):
+    """Return whether the folder has exactly the compiled theories, unchanged."""
+    if not is_private(folder):
         return False
     try:
         sums = json.loads((folder / SUMS).read_text("ascii"))
         expected = {f"{name}.vo" for name in THEORIES}
         loaded = {str(x.relative_to(folder)) for x in folder.rglob("*") if x.suffix in _LOADED}
-        if not set(sums) == loaded == expected or not (folder / COMPLAINTS).is_file():
+        if not set(sums) == loaded == expected or not (folder / WARNINGS).is_file():
             return False
         return all(_sum((folder / name).read_bytes()) == sum_ for name, sum_ in sums.items())
     except (OSError, ValueError):
@@ -197,3 +199,16 @@ def _is_sound(folder: Path) -> bool:
 
 def _sum(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
+
+
+@contextlib.contextmanager
+def one_at_a_time(folder: Path) -> Iterator[None]:
+    """Wait until no other process works in a folder of the cache; the system releases the lock if we die."""
+    with contextlib.ExitStack() as stack:
+        with contextlib.suppress(ImportError, OSError):  # without locks, two processes may do the same work
+            import fcntl
+
+            handle = os.open(folder, os.O_RDONLY)
+            stack.callback(os.close, handle)
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield

@@ -10,24 +10,24 @@ from roadproof.runtime.records import dataclass
 
 @dataclass(frozen=True)
 class Fixed:
-    """One instant, in s."""
+    """A moment at one instant (s)."""
 
     time: Fraction
 
 
 @dataclass(frozen=True)
 class Later:
-    """So many seconds after each instant."""
+    """A moment at a delay (s) after each instant."""
 
     time: Fraction
 
 
-Moment: TypeAlias = Fixed | Later
+DerivationMoment: TypeAlias = Fixed | Later
 
 
 @dataclass(frozen=True)
 class Soon:
-    """Each instant between two, which are as near to the first as one likes."""
+    """The instants between two that are arbitrarily close to the first."""
 
     begin: Fraction
     end: Fraction
@@ -35,7 +35,7 @@ class Soon:
 
 @dataclass(frozen=True)
 class Crossing:
-    """The irrational instant between two at which a polynomial, lowest power first, is 0."""
+    """The irrational instant between two rational ones at which a polynomial, lowest power first, is 0."""
 
     begin: Fraction
     end: Fraction
@@ -43,59 +43,65 @@ class Crossing:
 
 
 @dataclass(frozen=True)
-class Step:
-    """A rule of Shown.v, what it is told, and what it rests on.
+class DerivationStep:
+    """A rule of Shown.v with its arguments and premises.
 
-    ``cuts``: the instants of Sign. ``many``: the children are a list, as Each has them.
+    ``cuts``: the instants of Sign. ``many``: the children form a list, as in Each.
     """
 
     rule: str
-    told: tuple[str, ...] = ()
-    children: tuple["Step", ...] = ()
+    arguments: tuple[str, ...] = ()
+    children: tuple["DerivationStep", ...] = ()
     cuts: tuple[Fraction, ...] | None = None
     many: bool = False
 
 
-def sign(cuts: tuple[Fraction, ...]) -> Step:
-    return Step("Sign", cuts=cuts)
+def sign(cuts: tuple[Fraction, ...]) -> DerivationStep:
+    return DerivationStep("Sign", cuts=cuts)
 
 
-def split(time: Fraction, after: bool, before: Step, since: Step) -> Step:
-    return Step("Split", (rational(time), str(after).lower()), (before, since))
+def split(time: Fraction, after: bool, before: DerivationStep, since: DerivationStep) -> DerivationStep:
+    return DerivationStep("Split", (rational(time), str(after).lower()), (before, since))
 
 
-def case(polynomial: tuple[Fraction, ...], above: Step, not_above: Step) -> Step:
-    return Step("Case", (f"[{'; '.join(map(rational, polynomial))}]",), (above, not_above))
+def case(
+    polynomial: tuple[Fraction, ...], above: DerivationStep, not_above: DerivationStep
+) -> DerivationStep:
+    return DerivationStep("Case", (f"[{'; '.join(map(rational, polynomial))}]",), (above, not_above))
 
 
-def element(number: int, step: Step) -> Step:
-    return Step("Element", (str(number),), (step,))
+def element(number: int, step: DerivationStep) -> DerivationStep:
+    return DerivationStep("Element", (str(number),), (step,))
 
 
-def soon(moment: Soon, before: Step, after: Step) -> Step:
-    return Step("Soon", (rational(moment.begin), rational(moment.end)), (before, after))
+def soon(moment: Soon, before: DerivationStep, after: DerivationStep) -> DerivationStep:
+    return DerivationStep("Soon", (rational(moment.begin), rational(moment.end)), (before, after))
 
 
-def crossed(moment: Crossing, sign: int, steps: tuple[Step, Step, Step]) -> Step:
-    """``sign``: by which the polynomial is multiplied."""
+def crossed(
+    moment: Crossing, sign: int, steps: tuple[DerivationStep, DerivationStep, DerivationStep]
+) -> DerivationStep:
+    """Return the step for an irrational instant; ``sign``: a factor of the polynomial."""
     coefficients = "; ".join(rational(Fraction(sign * x)) for x in moment.polynomial)
-    return Step("Crossing", (rational(moment.begin), rational(moment.end), f"[{coefficients}]"), steps)
+    return DerivationStep(
+        "Crossing", (rational(moment.begin), rational(moment.end), f"[{coefficients}]"), steps
+    )
 
 
-def timed(rule: str, moment: Moment, *steps: Step) -> Step:
-    """Moment, Reach or Break."""
-    return Step(rule, (f"({type(moment).__name__} {rational(moment.time)})",), steps)
+def timed(rule: str, moment: DerivationMoment, *steps: DerivationStep) -> DerivationStep:
+    """Return a step of the rule Moment, Reach or Break."""
+    return DerivationStep(rule, (f"({type(moment).__name__} {rational(moment.time)})",), steps)
 
 
 def rational(value: Fraction) -> str:
-    """A number of Q, where the notations of its scope are open."""
+    """Return a number of Q, for places where the notations of its scope are open."""
     if value.denominator == 1:
         return str(value) if value >= 0 else f"({value})"
     return f"({value.numerator} # {value.denominator})"
 
 
-def coq_derivation(step: Step) -> Iterator[str]:
-    """A derivation as a term of Shown.v, in lines."""
+def coq_derivation(step: DerivationStep) -> Iterator[str]:
+    """Yield the lines of a derivation as a term of Shown.v."""
     line = ""
     for word in _words(step):
         if line and len(line) + len(word) > WIDTH:
@@ -105,8 +111,8 @@ def coq_derivation(step: Step) -> Iterator[str]:
     yield line
 
 
-def _words(step: Step) -> Iterator[str]:
-    waiting: list[Step | str] = [step]
+def _words(step: DerivationStep) -> Iterator[str]:
+    waiting: list[DerivationStep | str] = [step]
     while waiting:
         current = waiting.pop()
         if isinstance(current, str):
@@ -115,11 +121,11 @@ def _words(step: Step) -> Iterator[str]:
         if current.cuts is not None:
             yield f"({current.rule} [{'; '.join(map(rational, current.cuts))}])"
             continue
-        if not current.told and not current.children and not current.many:
+        if not current.arguments and not current.children and not current.many:
             yield current.rule
             continue
-        yield f"({' '.join([current.rule, *current.told])}"
-        after: list[Step | str] = []
+        yield f"({' '.join([current.rule, *current.arguments])}"
+        after: list[DerivationStep | str] = []
         if current.many:
             after.append("[")
             for place, child in enumerate(current.children):

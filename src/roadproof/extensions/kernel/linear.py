@@ -1,9 +1,9 @@
-"""Linear constraints on moments, added and taken back: what they contradict, and by which multipliers.
+"""Linear constraints on moments that can be added and retracted, with multipliers of each contradiction.
 
-The simplex method for satisfiability (Dutertre and de Moura 2006) in exact rationals: each linear form has a
-variable of its own, constraints bound these, and what is strict is above by an infinitesimal. A conflict is a
-sum of constraints that is absurd (Farkas), which Coq adds up again. Integers are ``int`` inside, since most
-numbers are and ``Fraction`` is slow.
+The simplex method for satisfiability (Dutertre and de Moura 2006) in exact rationals. Each linear form has a
+variable, constraints bound these variables, and strict bounds have an infinitesimal part. A conflict is an
+absurd sum of constraints (Farkas), which Coq adds up again. Integers are ``int`` inside, since most numbers
+are integers and ``Fraction`` is slow.
 """
 
 from collections.abc import Iterator, Mapping
@@ -34,8 +34,8 @@ class _Bound:
 
 
 @dataclass
-class Linear:
-    """``0 <= m`` and ``0 < m`` for moments m, each constraint with a number."""
+class LinearConstraints:
+    """Constraints ``0 <= m`` and ``0 < m`` for moments m, each with a number."""
 
     rows: dict[int, dict[int, _Number]] = field(default_factory=dict)  # basic variable: over the others
     forms: dict[_Form, int] = field(default_factory=dict)
@@ -47,7 +47,7 @@ class Linear:
 
     @contextmanager
     def taken_back(self) -> Iterator[None]:
-        """Constraints that are added inside are gone afterwards."""
+        """Retract at the end all constraints that are added inside."""
         mark = len(self.trail)
         try:
             yield
@@ -61,7 +61,7 @@ class Linear:
                     bounds[variable] = before
 
     def add(self, constraint: int, strict: bool, moment: Moment) -> Witness | None:
-        """Add ``0 <= moment`` (``0 < moment`` where strict): multipliers of a contradiction, or None."""
+        """Add ``0 <= moment`` (``0 < moment`` if strict); return multipliers of a contradiction, or None."""
         if not moment.parts:
             absurd = moment.constant < 0 or (strict and moment.constant == 0)
             return ((constraint, Fraction(1)),) if absurd else None
@@ -72,21 +72,21 @@ class Linear:
         return self._bound(first < 0, variable, _Bound((edge, infinitesimal), constraint, scale))
 
     def entails(self, moment: Moment, strict: bool = False) -> Witness | None:
-        """Multipliers that show ``0 <= moment`` (``0 < moment``), or None where it does not follow.
+        """Return multipliers that prove ``0 <= moment`` (``0 < moment``); None if it does not follow.
 
-        What has been added must not be contradictory.
+        The constraints so far must be consistent.
         """
         if not moment.parts or not self._refuted(moment, strict):
-            known = len(self.values)
+            count_before = len(self.values)
             with self.taken_back():
-                found = self.add(GOAL, not strict, Moment() - moment)
-            if len(self.values) > known:
-                self._forget(known)
-            return found
+                witness = self.add(GOAL, not strict, Moment() - moment)
+            if len(self.values) > count_before:
+                self._forget(count_before)
+            return witness
         return None
 
     def _refuted(self, moment: Moment, strict: bool) -> bool:
-        """Whether the values at hand, which satisfy all constraints, show that it does not follow."""
+        """Return whether the current values, which satisfy all constraints, violate the inequality."""
         self._repair()
         total, small = _quotient(moment.constant, 1), _quotient(0, 1)
         for name, share in moment.parts:
@@ -101,7 +101,7 @@ class Linear:
     # --- forms -------------------------------------------------------------------------------------
 
     def _variable(self, form: _Form) -> int:
-        """The variable that stands for a form, with its row where it is a sum of others."""
+        """Return the variable of a form, with a row if the form is a sum of others."""
         if form in self.forms:
             return self.forms[form]
         row: dict[int, _Number] = {}
@@ -123,15 +123,15 @@ class Linear:
             sum(q * self.values[x][1] for x, q in row.items()),
         )
 
-    def _forget(self, known: int) -> None:
-        """Take out the sums that no constraint speaks of any more."""
+    def _forget(self, count_before: int) -> None:
+        """Delete the sums that no constraint uses any more."""
         self._repair()  # who becomes free to choose has to be within its bounds
-        for form in list(self.forms)[::-1][: len(self.values) - known]:
+        for form in list(self.forms)[::-1][: len(self.values) - count_before]:
             variable = self.forms[form]
             if len(form) == 1:
                 continue
             if variable not in self.rows:
-                self._pivot(next(b for b, row in self.rows.items() if variable in row), variable)
+                self._pivot(next(basic for basic, row in self.rows.items() if variable in row), variable)
             del self.rows[variable], self.forms[form], self.values[variable]
 
     # --- bounds ------------------------------------------------------------------------------------
@@ -152,7 +152,7 @@ class Linear:
         return self._repair()
 
     def _move(self, variable: int, value: _Value) -> None:
-        """Give a variable that is free to choose another value."""
+        """Set the value of a nonbasic variable, and update the basic ones."""
         before = self.values[variable]
         self.values[variable] = value
         for basic, row in self.rows.items():
@@ -165,7 +165,7 @@ class Linear:
                 )
 
     def _repair(self) -> Witness | None:
-        """Values within all bounds, or what contradicts. Bland's rule: the first variable that helps."""
+        """Restore values within all bounds by Bland's rule; return a contradiction, or None."""
         while True:
             broken = self._broken()
             if broken is None:
@@ -198,15 +198,15 @@ class Linear:
     def _conflict(self, row: Mapping[int, _Number], bound: _Bound, grow: bool) -> Witness:
         shares = [(bound.constraint, 1 / Fraction(bound.scale))]
         for place, factor in row.items():
-            held = self.upper[place] if (factor > 0) == grow else self.lower[place]
-            shares.append((held.constraint, Fraction(factor if factor > 0 else -factor, held.scale)))
+            blocking = self.upper[place] if (factor > 0) == grow else self.lower[place]
+            shares.append((blocking.constraint, Fraction(factor if factor > 0 else -factor, blocking.scale)))
         total: dict[int, Fraction] = {}
         for constraint, share in shares:
             total[constraint] = total.get(constraint, Fraction(0)) + share
         return tuple(total.items())
 
     def _pivot(self, basic: int, place: int) -> None:
-        """``place`` becomes a sum of the others, and ``basic`` is free to choose."""
+        """Exchange a basic variable and a nonbasic one."""
         row = self.rows.pop(basic)
         factor = row.pop(place)
         new = {x: _quotient(-q, factor) for x, q in row.items()}
@@ -219,13 +219,13 @@ class Linear:
 
 
 def _quotient(dividend: _Number, divisor: _Number) -> _Number:
-    """An ``int`` where it is a whole number."""
+    """Return the quotient, as ``int`` if it is whole."""
     exact = Fraction(dividend, divisor) if divisor != 1 else dividend
     return exact.numerator if exact.denominator == 1 else exact
 
 
 def add_to(row: dict[int, N], other: Mapping[int, N], factor: N) -> None:
-    """Add a multiple of another row to a row; what becomes 0 is left out."""
+    """Add a multiple of another row to a row, and drop zeros."""
     for place, share in other.items():
         total = row.get(place, 0) + factor * share
         if total:

@@ -1,7 +1,7 @@
-"""Names of claims as names in Coq. Trusted: no name may be taken for another, or for a word of Coq.
+"""Names of claims as names in Coq. Trusted: no name may be mistaken for another, or for a keyword of Coq.
 
-A name that could be one of Coq's, of the notations', or of another thing of the same file is given a number.
-What a name stands for, such as the vehicle "SV", is a text beside it, exactly as it is written.
+A name that collides with one of Coq, of the notations, or of the same file gets a number. The original name,
+such as the vehicle "SV", is kept as a string constant.
 """
 
 import re
@@ -17,7 +17,7 @@ LONGEST = 200
 _ZONES = ("main", "merge", "depart")
 
 # Every word that a printed file says beside the names of the claim: Coq's, the notations', the theories'.
-_SAID = """
+_RESERVED = """
 _ as at cofix else end exists exists2 fix for forall fun if IF in let match mod Prop return Set SProp then
 Type by where with using
 Admitted Axiom Check Compute Definition End Eval Export Fail Fixpoint From Goal Hint Import Inductive Lemma
@@ -43,15 +43,15 @@ Products Rss Instant Named Sane Guarantee Case Motion Integral Schemas Moves
 world element R W B named holds respects unbound parameter now iff_trans Prescribed Braking Gained Boundary
 Braked Following Responding Joined Aided Assisted Aeb Reading
 """
-WORDS = frozenset(_SAID.split())
+WORDS = frozenset(_RESERVED.split())
 
 
 @dataclass
 class Names:
-    """The names of one printed file; each thing keeps the name that it was first given.
+    """The names of one printed file; each thing keeps its first name.
 
-    ``things`` are vehicles and lanes, of which functions speak by their arguments alone: so an argument may
-    be called what a thing is called. ``arguments`` and ``bound`` are names that are in use inside others.
+    ``things`` are vehicles and lanes; functions use only their arguments, so an argument may have the name of
+    a thing. ``arguments`` and ``bound``: names in use inside functions and quantifiers.
     """
 
     given: dict[tuple[str, str], str] = field(default_factory=dict)
@@ -61,79 +61,79 @@ class Names:
     bound: set[str] = field(default_factory=set)
 
     def thing(self, kind: str, name: str) -> str:
-        """The name of a vehicle or lane that the claim calls ``name``."""
+        """Return the Coq name of a vehicle or lane."""
         if (kind, name) not in self.given:
-            found = _apart(name, self.taken | self.things | self.bound)
-            self.things.add(found)
-            self.given[kind, name] = found
+            word = _unused_name(name, self.taken | self.things | self.bound)
+            self.things.add(word)
+            self.given[kind, name] = word
         return self.given[kind, name]
 
     def of(self, kind: str, name: str) -> str:
-        """The name of a parameter or variable that the claim calls ``name``."""
+        """Return the Coq name of a parameter or variable."""
         if (kind, name) not in self.given:
             self.given[kind, name] = self.new(name)
         return self.given[kind, name]
 
     def new(self, name: str) -> str:
-        """A name that nothing has, like ``name``. Raises ``InputError`` for what is none."""
-        found = _apart(name, self.taken | self.things | self.bound | self.arguments)
-        self.taken.add(found)
-        return found
+        """Return an unused name similar to ``name``. Raises ``InputError`` if ``name`` is malformed."""
+        word = _unused_name(name, self.taken | self.things | self.bound | self.arguments)
+        self.taken.add(word)
+        return word
 
     def argument(self, name: str, scope: Collection[str]) -> str:
-        """A name for an argument, which nothing in ``scope`` has."""
-        found = _apart(name, self.taken | set(scope))
-        self.arguments.add(found)
-        return found
+        """Return a name for an argument that is not in ``scope``."""
+        word = _unused_name(name, self.taken | set(scope))
+        self.arguments.add(word)
+        return word
 
     def local(self, name: str, scope: Collection[str]) -> str:
-        """A name for what a quantifier speaks of, which nothing in ``scope`` has, and no thing."""
-        found = _apart(name, self.taken | self.things | set(scope))
-        self.bound.add(found)
-        return found
+        """Return a name for a bound variable that is not in ``scope`` and no thing."""
+        word = _unused_name(name, self.taken | self.things | set(scope))
+        self.bound.add(word)
+        return word
 
 
 def zone(name: str) -> str:
-    """The name of a zone. Raises ``InputError`` for one that proofs/kernel/Meaning.v lacks."""
+    """Return the name of a zone. Raises ``InputError`` for one that proofs/kernel/Meaning.v lacks."""
     if name not in _ZONES:
         raise InputError(f"zone={name[:40]}: there are {', '.join(_ZONES)}")
     return name
 
 
-def _apart(name: str, others: Collection[str]) -> str:
+def _unused_name(name: str, others: Collection[str]) -> str:
     if not name or len(name) > LONGEST:
         raise InputError(f"'{name[:60]}' is no name: it must have 1 to {LONGEST} characters")
-    plain = _STRANGE.sub("_", name.replace("@", "_at_"))
-    plain = plain if _PLAIN.fullmatch(plain) else f"x_{plain}"
-    found, count = plain, 1
-    while found in others:
+    base = _STRANGE.sub("_", name.replace("@", "_at_"))
+    base = base if _PLAIN.fullmatch(base) else f"x_{base}"
+    word, count = base, 1
+    while word in others:
         count += 1
-        found = f"{plain}_{count}"
-    return found
+        word = f"{base}_{count}"
+    return word
 
 
 def literal(text: str) -> str:
-    """A text of Coq. Raises ``InputError`` for what names are not made of."""
+    """Return a name as a Coq string. Raises ``InputError`` for characters that names do not have."""
     if not _PLAIN.fullmatch(text) or len(text) > LONGEST:
         raise InputError(f"'{text[:60]}' is no name: letters, digits and _ make one")
     return f'"{text}"'
 
 
 def quoted(text: str) -> str:
-    """Any text of printable ASCII as one of Coq. Raises ``InputError`` for others."""
+    """Return any printable ASCII text as a Coq string. Raises ``InputError`` for other texts."""
     if not (text.isascii() and text.isprintable()) or len(text) > LONGEST:
         raise InputError(f"'{text[:60]}' is not printed for Coq: a name there is printable ASCII")
     return '"' + text.replace('"', '""') + '"'
 
 
-def comment(words: str) -> str:
-    """Words for a comment of Coq: nothing in them ends it, opens another, or begins a text."""
-    said = " ".join(words.split()).replace("*", " * ").replace('"', "'")
-    return "".join(c if c.isascii() and c.isprintable() else "?" for c in said)
+def comment(source: str) -> str:
+    """Return text that is safe in a Coq comment: it cannot end it, or open a comment or string."""
+    text = " ".join(source.split()).replace("*", " * ").replace('"', "'")
+    return "".join(c if c.isascii() and c.isprintable() else "?" for c in text)
 
 
 def q(value: Fraction) -> str:
-    """A rational, in words of Tableau.v that need no scope.
+    """Return a rational as a term of Tableau.v that needs no scope.
 
     >>> q(Fraction(-3, 4))
     '(q (-3) 4)'

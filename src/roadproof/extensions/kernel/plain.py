@@ -1,4 +1,4 @@
-"""Facts about one instant as proofs/kernel/Products.v sees them: of two parts each, without inverses."""
+"""Facts about one instant in the form of proofs/kernel/Products.v: binary operators only, no inverses."""
 
 from collections.abc import Iterator, Sequence
 
@@ -9,7 +9,7 @@ from roadproof.logic.terms import Term
 
 
 def binary(formula: Formula) -> Formula:
-    """A formula as Coq has it: conjunctions of two, without names and without conjunctions of one or none."""
+    """Return a formula in Coq's form: binary conjunctions and disjunctions, definitions expanded."""
     match formula:
         case f.Application(_, _, body):
             return binary(body)
@@ -18,48 +18,50 @@ def binary(formula: Formula) -> Formula:
         case f.And(parts) | f.Or(parts):
             if not parts:
                 return f.Truth(isinstance(formula, f.And))
-            *others, found = map(binary, parts)
+            *others, nested = map(binary, parts)
             for x in reversed(others):
-                found = type(formula)((x, found))
-            return found
+                nested = type(formula)((x, nested))
+            return nested
         case f.Compare(left, op, right):
-            return f.Compare(_of_two(left), op, _of_two(right))
-        case _:
+            return f.Compare(_binary_term(left), op, _binary_term(right))
+        case f.Truth() | f.Occupies() | f.Some() | f.Every() | f.Until() | f.Eventually() | f.Always():
             return formula
 
 
-def _of_two(term: Term) -> Term:
-    """A term as Coq has it: ((x + y) + z), numbers without units."""
+def _binary_term(term: Term) -> Term:
+    """Return a term in Coq's form: ((x + y) + z), numbers without units."""
     match term:
         case t.Number(value, _):
             return t.Number(value)
         case t.Sum(parts) | t.Product(parts) | t.Maximum(parts) | t.Minimum(parts) if parts:
-            found, *others = map(_of_two, parts)
+            nested, *others = map(_binary_term, parts)
             for x in others:
-                found = type(term)((found, x))
-            return found
-        case _:
-            return t.with_children(term, tuple(map(_of_two, t.children(term))))
+                nested = type(term)((nested, x))
+            return nested
+        case _:  # open: terms of other shapes
+            return t.with_children(term, tuple(map(_binary_term, t.children(term))))
 
 
 def comparisons(formula: Formula) -> Iterator[f.Compare]:
-    """All in a formula, those of inverses without them."""
-    for x in f.subformulas(formula):
-        if isinstance(x, f.Compare):
-            inverted = isinstance(x.left, t.Inverse) or isinstance(x.right, t.Inverse)
-            yield from (y for y in f.subformulas(plain(x) if inverted else x) if isinstance(y, f.Compare))
+    """Yield all comparisons in a formula; those of inverses are rewritten without them."""
+    for part in f.subformulas(formula):
+        if isinstance(part, f.Compare):
+            inverted = isinstance(part.left, t.Inverse) or isinstance(part.right, t.Inverse)
+            yield from (
+                y for y in f.subformulas(plain(part) if inverted else part) if isinstance(y, f.Compare)
+            )
 
 
 def atoms_of(term: Term) -> Iterator[Term]:
-    """What is a variable of polynomials, inner quotients first."""
+    """Yield the terms that are variables of polynomials, inner quotients first."""
     match term:
         case t.Number():
             return
-        case t.Parameter() | t.Variable() | t.Signal() | t.Size() | t.Own():
+        case t.Parameter() | t.Variable() | t.Signal() | t.Size() | t.CustomSignal():
             yield term
         case t.Quotient(above, t.Number(value, _)) if value:
             yield from atoms_of(above)
-        case _:
+        case t.Sum() | t.Product() | t.Power() | t.Quotient() | t.Maximum() | t.Minimum() | t.Inverse():
             for x in t.children(term):
                 yield from atoms_of(x)
             if isinstance(term, t.Quotient):
@@ -67,7 +69,7 @@ def atoms_of(term: Term) -> Iterator[Term]:
 
 
 def extrema(terms: Sequence[Term]) -> Iterator[t.Maximum | t.Minimum]:
-    """Maxima and minima of two, as Coq has them: max(max(x, y), z); inner ones first."""
+    """Yield binary maxima and minima, inner ones first."""
     for term in terms:
         yield from extrema(t.children(term))
         if isinstance(term, t.Maximum | t.Minimum) and len(term.terms) == 2:
@@ -75,7 +77,7 @@ def extrema(terms: Sequence[Term]) -> Iterator[t.Maximum | t.Minimum]:
 
 
 def plain(compare: f.Compare) -> Formula:
-    """As ``plain`` of Products.v."""
+    """Return a comparison without inverses: ``plain`` of Products.v."""
     if compare.op in (">", ">="):
         return _lower("<" if compare.op == ">" else "<=", compare.right, compare.left)
     return _lower(compare.op, compare.left, compare.right)

@@ -1,7 +1,7 @@
-"""A formula as text of Coq, in the notations of proofs/kernel/Text.v. Trusted: it says what is proved.
+"""The printer of formulas for Coq, in the notations of proofs/kernel/Text.v. Trusted: it states the theorem.
 
-Definitions stay functions of their vehicles and lanes, as in the specification; what is printed once as a
-function is applied only where its body, with the names replaced, is what the claim means there.
+Definitions stay functions of their vehicles and lanes, as in the specification. A printed function is applied
+only if its body, with the arguments replaced, is what the claim means at that place.
 """
 
 import re
@@ -21,27 +21,28 @@ from roadproof.logic.rewrite import free_roads, rename, rename_vehicles, vehicle
 from roadproof.logic.terms import Term
 
 # Words of Text.v, which are those of the language; a new signal has none there.
-_SAID_OF_VEHICLES = frozenset(re.findall(r"\w+", "s d v_lon v_lat a_lon a_lat j_lon length width kind"))
+_SIGNAL_WORDS = frozenset(re.findall(r"\w+", "s d v_lon v_lat a_lon a_lat j_lon length width kind"))
 
 # What a definition calls its arguments, with their sorts; only names depend on it.
 Formals = Mapping[str, Sequence[tuple[str, str]]]
 
 
 # Between a word and what it is said of: a blank at which no line is broken.
-CLOSE = "\u00a0"
+FIXED_SPACE = "\u00a0"
 # How tightly terms bind.
 _ATOM, _PRODUCT, _SUM, _LOOSE = 3, 2, 1, 0
 
 
 @dataclass(frozen=True)
 class Scope:
-    """What names stand for inside a definition or a quantifier; other names are those of the claim."""
+    """The Coq names of vehicles and lanes inside a definition or quantifier; others are the claim's."""
 
     vehicles: Mapping[str, str] = field(default_factory=dict)
     roads: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def words(self) -> set[str]:
+        """The Coq names in the scope."""
         return {*self.vehicles.values(), *self.roads.values()}
 
 
@@ -50,9 +51,9 @@ _OUTSIDE = Scope()
 
 @dataclass(frozen=True)
 class _Function:
-    """A printed definition: its arguments by place, True for vehicles, and its body over ``arguments``.
+    """A printed definition: its arguments, True for each vehicle, and its body over ``arguments``.
 
-    ``is_closed``: the body speaks of nothing but them, so that it means the same wherever it is applied.
+    ``is_closed``: the body mentions only the arguments, so it means the same at every application.
     """
 
     word: str
@@ -64,7 +65,7 @@ class _Function:
 
 @dataclass
 class Printer:
-    """Prints formulas; what they rest on is in ``things`` and ``definitions``, in order."""
+    """A printer; ``things`` and ``definitions``: what printed formulas use, in order, as Coq."""
 
     formals: Formals = field(default_factory=dict)
     names: Names = field(default_factory=Names)
@@ -78,6 +79,7 @@ class Printer:
     # --- terms -------------------------------------------------------------------------------------
 
     def term(self, term: Term, scope: Scope = _OUTSIDE) -> str:
+        """Return a term as text of Coq. Raises ``InputError`` if Text.v has no notation for it."""
         match term:
             case t.Number(value, _):
                 return number(value)
@@ -86,15 +88,15 @@ class Printer:
             case t.Variable(name, _):
                 return self._thing("variable", name, "term", "Var")
             case t.Signal(name, vehicle) | t.Size(name, vehicle):
-                if name not in _SAID_OF_VEHICLES:
+                if name not in _SIGNAL_WORDS:
                     raise InputError(f"{name}({vehicle}): proofs/kernel/Text.v has no word for it")
-                return f"{name}{CLOSE}{self.vehicle(vehicle, scope)}"
-            case t.Own():
-                return self._own(term, scope)
+                return f"{name}{FIXED_SPACE}{self.vehicle(vehicle, scope)}"
+            case t.CustomSignal():
+                return self._custom_signal(term, scope)
             case t.Sum(terms):
                 return self._sum(terms, scope)
             case t.Product((t.Number(value=minus), other)) if minus == -1 and not isinstance(other, t.Number):
-                return f"-{CLOSE}{self._operand(other, scope, _ATOM)}"
+                return f"-{FIXED_SPACE}{self._operand(other, scope, _ATOM)}"
             case t.Product(factors):
                 if not factors:
                     raise InputError("a product of nothing is not printed")
@@ -120,12 +122,12 @@ class Printer:
                 assert_never(term)
 
     def _operand(self, term: Term, scope: Scope, least: int) -> str:
-        """A term in brackets where it binds less than ``least``."""
+        """Return a term, in brackets if it binds less tightly than ``least``."""
         shown = self.term(term, scope)
         return shown if _binding(term) >= least else f"({shown})"
 
     def _sum(self, terms: Sequence[Term], scope: Scope) -> str:
-        """x + y - z is (x + y) + (-1) * z for Coq too."""
+        """Return a sum; Coq reads x + y - z as (x + y) + (-1) * z, too."""
         if not terms:
             raise InputError("a sum of nothing is not printed")
         first, *others = terms
@@ -136,12 +138,12 @@ class Printer:
                     less, t.Number
                 ):
                     shown += f" - {self._operand(less, scope, _PRODUCT)}"
-                case _:
+                case _:  # open: any other summand
                     shown += f" + {self._operand(other, scope, _PRODUCT)}"
         return shown
 
     def _extremum(self, word: str, terms: Sequence[Term], scope: Scope) -> str:
-        """max(max(x, y), z)."""
+        """Return nested binary extrema: max(max(x, y), z)."""
         if not terms:
             raise InputError(f"the {word} of nothing is not printed")
         shown = self.term(terms[0], scope)
@@ -157,13 +159,15 @@ class Printer:
     # --- names -------------------------------------------------------------------------------------
 
     def vehicle(self, name: str, scope: Scope = _OUTSIDE) -> str:
+        """Return the Coq name of a vehicle."""
         return scope.vehicles.get(name) or self._thing("vehicle", name, "vehicle", "")
 
     def road(self, name: str, scope: Scope = _OUTSIDE) -> str:
+        """Return the Coq name of a lane or lanelet."""
         return scope.roads.get(name) or self._thing("lane", name, "road", "Free")
 
     def _thing(self, kind: str, name: str, sort: str, maker: str, end: str = "") -> str:
-        """The word for a thing of the claim, which is defined where it is met first."""
+        """Return the name of a thing of the claim; its first use adds a definition."""
         known = (kind, name) in self.names.given
         word = self.names.of(kind, name) if sort.endswith("term") else self.names.thing(kind, name)
         if not known:
@@ -171,23 +175,24 @@ class Printer:
             self.things.append(f"Definition {word} : {sort} := {made}.")
         return word
 
-    def _own(self, signal: t.Own, scope: Scope) -> str:
-        """A signal that a specification declares; of no vehicle is one of the vehicle ''."""
+    def _custom_signal(self, signal: t.CustomSignal, scope: Scope) -> str:
+        """Return a custom signal; one without a vehicle belongs to the vehicle ''."""
         if not signal.vehicle:
             return self._thing("signal of none", signal.name, "term", "Sig (Own", ') ""')
         word = self._thing("signal", signal.name, "vehicle -> term", "Sig (Own", ")")
-        return f"{word}{CLOSE}{self.vehicle(signal.vehicle, scope)}"
+        return f"{word}{FIXED_SPACE}{self.vehicle(signal.vehicle, scope)}"
 
     # --- formulas ----------------------------------------------------------------------------------
 
     def formula(self, formula: Formula, scope: Scope = _OUTSIDE) -> str:
+        """Return a formula as text of Coq. Raises ``InputError`` if it cannot be printed."""
         match formula:
             case f.Truth(value):
-                return f"Truth{CLOSE}{str(value).lower()}"
+                return f"Truth{FIXED_SPACE}{str(value).lower()}"
             case f.Compare(left, op, right):
                 return f"{self._side(left, scope)} {op} {self._side(right, scope)}"
             case f.Occupies(vehicle, lanelet):
-                return CLOSE.join(["occ", self.vehicle(vehicle, scope), self.road(lanelet, scope)])
+                return FIXED_SPACE.join(["occ", self.vehicle(vehicle, scope), self.road(lanelet, scope)])
             case f.Some(variable, domain, body) | f.Every(variable, domain, body):
                 word = "some" if isinstance(formula, f.Some) else "every"
                 where = self._domain(domain, scope)
@@ -222,11 +227,11 @@ class Printer:
         return shown if bare else f"({shown})"
 
     def _joined(self, word: str, parts: Sequence[Formula], scope: Scope) -> str:
-        """p and q and r is p and (q and r) for Coq too."""
+        """Return a conjunction or disjunction; Coq reads p and q and r as p and (q and r), too."""
         if len(parts) == 1:
             return self.formula(parts[0], scope)
         if not parts:
-            return f"Truth{CLOSE}{'true' if word == 'and' else 'false'}"
+            return f"Truth{FIXED_SPACE}{'true' if word == 'and' else 'false'}"
         return f" {word} ".join(self._part(x, scope) for x in parts)
 
     def _interval(self, interval: f.Interval, scope: Scope) -> str:
@@ -252,20 +257,20 @@ class Printer:
     # --- definitions -------------------------------------------------------------------------------
 
     def _named(self, named: f.Application, scope: Scope) -> str:
-        found = self._application(named, scope)
-        if found is None:
+        application = self._application(named, scope)
+        if application is None:
             return self.formula(named.body, scope)
-        function, actual = found
+        function, actual = application
         words = [
             self.vehicle(name, scope) if is_vehicle else self.road(name, scope)
             for name, is_vehicle in zip(actual, function.are_vehicles, strict=True)
         ]
-        return CLOSE.join([function.word, *words])
+        return FIXED_SPACE.join([function.word, *words])
 
     def _application(self, named: f.Application, scope: Scope) -> tuple[_Function, tuple[str, ...]] | None:
-        """The function that means ``named`` applied to these names, printed now if it is new.
+        """Return the function whose application means ``named``, printed now if it is new.
 
-        None where the body speaks of something bound that is no argument, so that it stands as it is.
+        None if the body mentions a bound variable that is no argument; then the body is printed in place.
         """
         bound = bool(scope.roads or scope.vehicles)
         if (named, bound) not in self.applied:
@@ -275,7 +280,7 @@ class Printer:
     def _known(self, named: f.Application, bound: bool) -> tuple[_Function, tuple[str, ...]] | None:
         meaning = up_to_variables(named.body)
         for function in self.functions.get(named.name, ()):
-            actual = _kept(named, function)
+            actual = _matching_arguments(named, function)
             if bound and not function.is_closed:
                 continue
             if actual is not None and up_to_variables(_replaced(function, actual)) == meaning:
@@ -289,20 +294,20 @@ class Printer:
             formals = tuple((name, "") for name in named.arguments)
         arguments: list[str] = []
         sorts: list[bool] = []
-        wanted: list[str] = []
+        formal_names: list[str] = []
         for name, (formal, sort) in zip(named.arguments, formals, strict=True):
             is_vehicle = name in vehicles or (name not in roads and sort in ("vehicle", "vehicles"))
             if is_vehicle or name in roads or sort == "lane":
                 arguments.append(name)
                 sorts.append(is_vehicle)
-                wanted.append(formal)
+                formal_names.append(formal)
         if len(set(arguments)) < len(arguments) or vehicles & roads:
-            arguments, sorts, wanted = [], [], []  # what is said of one thing twice is no pattern
+            arguments, sorts, formal_names = [], [], []  # what is said of one thing twice is no pattern
         is_closed = vehicles | roads <= set(arguments)
         if bound and not is_closed:
             return None
         local = Scope()
-        for name, is_vehicle, formal in zip(arguments, sorts, wanted, strict=True):
+        for name, is_vehicle, formal in zip(arguments, sorts, formal_names, strict=True):
             word = self.names.argument(formal, local.words)
             if is_vehicle:
                 local = Scope({**local.vehicles, name: word}, local.roads)
@@ -322,7 +327,7 @@ class Printer:
 
 
 def number(value: Fraction) -> str:
-    """A number in Coq: whole, or p # q."""
+    """Return a number in Coq: whole, or p # q."""
     return str(value.numerator) if value.denominator == 1 else f"{value.numerator} # {value.denominator}"
 
 
@@ -338,26 +343,28 @@ def _binding(term: Term) -> int:
             return _PRODUCT
         case t.Maximum((one,)) | t.Minimum((one,)):
             return _binding(one)
-        case _:
+        case t.Parameter() | t.Variable() | t.Signal() | t.Size() | t.CustomSignal():
+            return _ATOM
+        case t.Maximum() | t.Minimum() | t.Inverse():
             return _ATOM
 
 
 def _typed(words: Sequence[str], are_vehicles: Sequence[bool]) -> Iterator[str]:
-    """Arguments with their sorts, those of one sort that stand together as one: (a b : vehicle)."""
+    """Yield arguments with their sorts; neighbours of one sort share a bracket: (a b : vehicle)."""
     for is_vehicle, group in groupby(zip(words, are_vehicles, strict=True), key=lambda x: x[1]):
         sort = "vehicle" if is_vehicle else "road"
-        yield f"({CLOSE.join([*(word for word, _ in group), ':', sort])})"
+        yield f"({FIXED_SPACE.join([*(word for word, _ in group), ':', sort])})"
 
 
-def _kept(named: f.Application, function: _Function) -> tuple[str, ...] | None:
-    """The arguments of an application that the function has, by place; None where they do not fit."""
+def _matching_arguments(named: f.Application, function: _Function) -> tuple[str, ...] | None:
+    """Return the arguments of an application that the function takes; None if they do not fit."""
     if len(function.arguments) == len(named.arguments):
         return named.arguments
     return () if not function.arguments else None
 
 
 def _replaced(function: _Function, actual: Sequence[str]) -> Formula:
-    """The body of a function with its arguments replaced, all at once."""
+    """Return the body of a function with its arguments replaced simultaneously."""
     pairs = list(zip(function.arguments, actual, function.are_vehicles, strict=True))
     body = rename_vehicles(function.body, {old: new for old, new, is_vehicle in pairs if is_vehicle})
     lanes = [(old, new) for old, new, is_vehicle in pairs if not is_vehicle]

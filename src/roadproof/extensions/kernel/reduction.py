@@ -1,10 +1,9 @@
-"""Fewer variables for the search of a contradiction: equations solved, directions without effect left out.
+"""Fewer variables for the search of a contradiction: solve equations, and drop directions without effect.
 
-What follows from other linear inequalities is left out, too; products of it follow from products of them.
-
-An equation in which a variable has a number as factor gives that variable; constraints become themselves
-plus a multiple of the equation. Where all nonlinear constraints depend on differences of variables only, as
-on gaps between vehicles, one variable stands for each difference. Not trusted: Coq adds up what comes out.
+An equation in which a variable has a constant factor gives that variable; a multiple of the equation is added
+to each constraint. If all nonlinear constraints depend only on differences of variables, such as gaps between
+vehicles, one variable stands for each difference. Linear inequalities that follow from others are dropped.
+Not trusted: Coq adds the result up.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -19,21 +18,21 @@ _SMALL = 1e-6
 
 
 @dataclass(frozen=True)
-class Inequality:
-    """``polynomial`` is at least 0, above it where ``strict``; ``written``: why, for Coq.
+class PolynomialInequality:
+    """The condition that ``polynomial`` is at least 0, or above 0 if ``strict``, with a proof for Coq.
 
-    ``scale``: how often it contains the polynomial that is written.
+    ``scale``: the factor between this polynomial and the proved one.
     """
 
     polynomial: Polynomial[int]
     strict: bool
-    written: str
+    proof_text: str
     scale: Fraction = Fraction(1)
 
 
 @dataclass(frozen=True)
-class Equation:
-    """``polynomial`` is 0; ``times``: why a multiple is 0, for Coq."""
+class PolynomialEquation:
+    """The condition that ``polynomial`` is 0; ``times``: the proof for Coq that a multiple is 0."""
 
     polynomial: Polynomial[int]
     times: Callable[[Polynomial[int]], str]
@@ -41,20 +40,26 @@ class Equation:
 
 @dataclass(frozen=True)
 class Reduction:
-    """Constraints in fewer variables; ``lifted`` says of each what it is in those that Coq has."""
+    """Constraints in fewer variables; ``lifted``: each variable as a polynomial in Coq's variables."""
 
-    inequalities: tuple[Inequality, ...]
-    equations: tuple[Equation, ...]
+    inequalities: tuple[PolynomialInequality, ...]
+    equations: tuple[PolynomialEquation, ...]
     lifted: Mapping[int, Polynomial[int]]
 
     def lift(self, polynomial: Polynomial[int]) -> Polynomial[int]:
+        """Return a polynomial in Coq's variables."""
         return polynomial.substitute(lambda x: self.lifted.get(x, variable(x)))
 
 
 def reduce_constraints(constraints: Sequence[Constraint]) -> Reduction:
-    """The constraints, equations solved and without directions that have no effect."""
+    """Return consequences of the constraints in fewer variables, with proofs for Coq.
+
+    Equations are solved where possible; then variables are dropped along which no nonlinear constraint or
+    equation changes. Linear inequalities that change along these are lost, except sums of two whose
+    changes cancel. So a contradiction of the result is one of the constraints, but not always conversely.
+    """
     inequalities, equations = _given(constraints)
-    left: list[Equation] = []
+    left: list[PolynomialEquation] = []
     while equations:
         equation = equations.pop(0)
         solved = _solvable(equation.polynomial)
@@ -69,31 +74,33 @@ def reduce_constraints(constraints: Sequence[Constraint]) -> Reduction:
     return _flat(_useful(inequalities), [x for x in left if x.polynomial.terms])
 
 
-def _given(constraints: Sequence[Constraint]) -> tuple[list[Inequality], list[Equation]]:
-    """As they stand; two inequalities that are opposite are an equation, too."""
-    inequalities: list[Inequality] = []
-    equations: list[Equation] = []
+def _given(constraints: Sequence[Constraint]) -> tuple[list[PolynomialInequality], list[PolynomialEquation]]:
+    """Return inequalities and equations; two opposite inequalities also give an equation."""
+    inequalities: list[PolynomialInequality] = []
+    equations: list[PolynomialEquation] = []
     last = len(constraints) - 1
-    seen: dict[frozenset[tuple[tuple[int, ...], Fraction]], str] = {}
-    for place, x in enumerate(constraints):
-        written = f"(given_ {last - place})"
-        if x.kind == "zero":
-            equations.append(Equation(x.polynomial, _multiple(written)))
+    by_terms: dict[frozenset[tuple[tuple[int, ...], Fraction]], str] = {}
+    for place, constraint in enumerate(constraints):
+        proof_text = f"(given_ {last - place})"
+        if constraint.kind == "zero":
+            equations.append(PolynomialEquation(constraint.polynomial, _multiple(proof_text)))
             continue
-        inequalities.append(Inequality(x.polynomial, x.kind == "above", written))
-        opposite = seen.get(frozenset(x.polynomial.scaled(Fraction(-1)).terms.items()))
+        inequalities.append(
+            PolynomialInequality(constraint.polynomial, constraint.kind == "above", proof_text)
+        )
+        opposite = by_terms.get(frozenset(constraint.polynomial.scaled(Fraction(-1)).terms.items()))
         if opposite is not None:
-            equations.append(Equation(x.polynomial, _both(written, opposite)))
-        seen[frozenset(x.polynomial.terms.items())] = written
+            equations.append(PolynomialEquation(constraint.polynomial, _both(proof_text, opposite)))
+        by_terms[frozenset(constraint.polynomial.terms.items())] = proof_text
     return inequalities, equations
 
 
-def _multiple(written: str) -> Callable[[Polynomial[int]], str]:
-    return lambda factor: f"(times_ {coq(factor)} {written})"
+def _multiple(proof_text: str) -> Callable[[Polynomial[int]], str]:
+    return lambda factor: f"(times_ {coq(factor)} {proof_text})"
 
 
 def _both(up: str, down: str) -> Callable[[Polynomial[int]], str]:
-    """A multiple c of what is at least and at most 0: (c/2 + 1/2)^2 of one, (c/2 - 1/2)^2 of the other."""
+    """Return the proof of a multiple c of two opposites: (c/2 + 1/2)^2 of one, (c/2 - 1/2)^2 of the other."""
 
     def times(factor: Polynomial[int]) -> str:
         half: Polynomial[int] = constant(Fraction(1, 2))
@@ -110,7 +117,7 @@ def _both(up: str, down: str) -> Callable[[Polynomial[int]], str]:
 
 
 def _solvable(equation: Polynomial[int]) -> int | None:
-    """A variable that stands in one term of the equation, with a number as its only factor."""
+    """Return a variable that occurs in one term of the equation, with a number as its only factor."""
     for monomial in sorted(equation.terms, reverse=True):
         if len(monomial) == 1 and sum(monomial[0] in x for x in equation.terms) == 1:
             return monomial[0]
@@ -118,15 +125,15 @@ def _solvable(equation: Polynomial[int]) -> int | None:
 
 
 def _quotient(polynomial: Polynomial[int], equation: Polynomial[int], solved: int) -> Polynomial[int]:
-    """The multiple of an equation that takes a variable out of a polynomial where it is subtracted."""
-    found: Polynomial[int] = constant(Fraction(0))
+    """Return the multiple of an equation that, subtracted from a polynomial, eliminates a variable."""
+    result: Polynomial[int] = constant(Fraction(0))
     while True:
-        rest = polynomial - found * equation
+        rest = polynomial - result * equation
         parts = {m: q for m, q in rest.terms.items() if solved in m}
         if not parts:
-            return found
+            return result
         factor = equation.terms[(solved,)]
-        found = found + Polynomial({_once_less(m, solved): q / factor for m, q in parts.items()})
+        result = result + Polynomial({_once_less(m, solved): q / factor for m, q in parts.items()})
 
 
 def _once_less(monomial: tuple[int, ...], solved: int) -> tuple[int, ...]:
@@ -134,7 +141,7 @@ def _once_less(monomial: tuple[int, ...], solved: int) -> tuple[int, ...]:
     return monomial[:place] + monomial[place + 1 :]
 
 
-def _without(x: Inequality, equation: Equation, solved: int) -> Inequality:
+def _without(x: PolynomialInequality, equation: PolynomialEquation, solved: int) -> PolynomialInequality:
     factor = _quotient(x.polynomial, equation.polynomial, solved)
     if not factor.terms:
         return x
@@ -142,11 +149,13 @@ def _without(x: Inequality, equation: Equation, solved: int) -> Inequality:
     return replace(
         x,
         polynomial=x.polynomial + minus * equation.polynomial,
-        written=f"(sum_ {x.written} {equation.times(minus)})",
+        proof_text=f"(sum_ {x.proof_text} {equation.times(minus)})",
     )
 
 
-def _without_in_equation(x: Equation, equation: Equation, solved: int) -> Equation:
+def _without_in_equation(
+    x: PolynomialEquation, equation: PolynomialEquation, solved: int
+) -> PolynomialEquation:
     minus = _quotient(x.polynomial, equation.polynomial, solved).scaled(Fraction(-1))
     if not minus.terms:
         return x
@@ -154,39 +163,41 @@ def _without_in_equation(x: Equation, equation: Equation, solved: int) -> Equati
     def times(factor: Polynomial[int]) -> str:
         return f"(sum_ {x.times(factor)} {equation.times(factor * minus)})"
 
-    return Equation(x.polynomial + minus * equation.polynomial, times)
+    return PolynomialEquation(x.polynomial + minus * equation.polynomial, times)
 
 
 # --- inequalities --------------------------------------------------------------------------------
 
 
-def _useful(inequalities: Sequence[Inequality]) -> list[Inequality]:
-    """In whole numbers, each once, without those that say nothing."""
-    found: dict[frozenset[tuple[tuple[int, ...], Fraction]], Inequality] = {}
-    for x in inequalities:
-        if not x.polynomial.terms:
+def _useful(inequalities: Sequence[PolynomialInequality]) -> list[PolynomialInequality]:
+    """Return distinct inequalities with whole coefficients, without trivial ones."""
+    useful: dict[frozenset[tuple[tuple[int, ...], Fraction]], PolynomialInequality] = {}
+    for inequality in inequalities:
+        if not inequality.polynomial.terms:
             continue
-        if x.polynomial.degree == 0 and x.polynomial.constant > 0:
+        if inequality.polynomial.degree == 0 and inequality.polynomial.constant > 0:
             continue
-        scale = whole_factor(x.polynomial.terms.values())
-        scaled = x.polynomial.scaled(scale)
+        scale = whole_factor(inequality.polynomial.terms.values())
+        scaled = inequality.polynomial.scaled(scale)
         key = frozenset(scaled.terms.items())
-        if key not in found or x.strict:
-            written = x.written if scale == 1 else f"(product_ {number(scale)} {x.written})"
-            found[key] = Inequality(scaled, x.strict, written)
-    return list(found.values())
+        if key not in useful or inequality.strict:
+            proof_text = (
+                inequality.proof_text if scale == 1 else f"(product_ {number(scale)} {inequality.proof_text})"
+            )
+            useful[key] = PolynomialInequality(scaled, inequality.strict, proof_text)
+    return list(useful.values())
 
 
 # --- directions ----------------------------------------------------------------------------------
 
 
-def _flat(inequalities: list[Inequality], equations: list[Equation]) -> Reduction:
-    """Variables left out along which nothing nonlinear changes, and what is linear and changes there."""
-    kept = [x.polynomial for x in inequalities if x.polynomial.degree > 1]
-    kept += [x.polynomial for x in equations]
+def _flat(inequalities: list[PolynomialInequality], equations: list[PolynomialEquation]) -> Reduction:
+    """Drop variables along which no nonlinear constraint changes, and what is linear and changes there."""
+    nonlinear = [x.polynomial for x in inequalities if x.polynomial.degree > 1]
+    nonlinear += [x.polynomial for x in equations]
     variables = sorted({v for x in inequalities for v in x.polynomial.variables})
     rows: dict[tuple[int, tuple[int, ...]], dict[int, Fraction]] = {}
-    for place, polynomial in enumerate(kept):
+    for place, polynomial in enumerate(nonlinear):
         for v in variables:
             for monomial, factor in _derivative(polynomial, v).terms.items():
                 rows.setdefault((place, monomial), {})[v] = factor
@@ -195,10 +206,10 @@ def _flat(inequalities: list[Inequality], equations: list[Equation]) -> Reductio
     dropped = {v for v in variables if v not in forms}
     zero: Polynomial[int] = constant(Fraction(0))
 
-    def change(x: Inequality) -> Polynomial[int]:
-        """What it is not as a function of the forms; nothing where it is the same as of variables."""
-        kept = x.polynomial.substitute(lambda v: zero if v in dropped else forms.get(v, variable(v)))
-        return kept - x.polynomial
+    def change(x: PolynomialInequality) -> Polynomial[int]:
+        """Return the difference that the change of variables makes; 0 if the inequality is unchanged."""
+        projected = x.polynomial.substitute(lambda v: zero if v in dropped else forms.get(v, variable(v)))
+        return projected - x.polynomial
 
     def cut(polynomial: Polynomial[int]) -> Polynomial[int]:
         return polynomial.substitute(lambda x: zero if x in dropped else variable(x))
@@ -206,7 +217,9 @@ def _flat(inequalities: list[Inequality], equations: list[Equation]) -> Reductio
     return _scaled(
         Reduction(
             tuple(
-                _independent([replace(x, polynomial=cut(x.polynomial)) for x in _kept(inequalities, change)])
+                _independent(
+                    [replace(x, polynomial=cut(x.polynomial)) for x in _invariant(inequalities, change)]
+                )
             ),
             tuple(replace(x, polynomial=cut(x.polynomial)) for x in equations),
             forms,
@@ -215,78 +228,79 @@ def _flat(inequalities: list[Inequality], equations: list[Equation]) -> Reductio
 
 
 def _derivative(polynomial: Polynomial[int], v: int) -> Polynomial[int]:
-    found: Polynomial[int] = constant(Fraction(0))
+    derivative: Polynomial[int] = constant(Fraction(0))
     for monomial, factor in polynomial.terms.items():
         if v in monomial:
-            found = found + Polynomial({_once_less(monomial, v): factor * monomial.count(v)})
-    return found
+            derivative = derivative + Polynomial({_once_less(monomial, v): factor * monomial.count(v)})
+    return derivative
 
 
-def _kept(
-    inequalities: Sequence[Inequality], change: Callable[[Inequality], Polynomial[int]]
-) -> Iterator[Inequality]:
-    """Those without a change, and sums of two, such as of lengths, in which opposite changes cancel out."""
-    changed: list[tuple[Inequality, Polynomial[int]]] = []
-    for x in inequalities:
-        own = change(x)
-        if not own.terms:
-            yield x
+def _invariant(
+    inequalities: Sequence[PolynomialInequality], change: Callable[[PolynomialInequality], Polynomial[int]]
+) -> Iterator[PolynomialInequality]:
+    """Yield inequalities without a change, and sums of two with opposite changes, such as of lengths."""
+    changed: list[tuple[PolynomialInequality, Polynomial[int]]] = []
+    for inequality in inequalities:
+        own_change = change(inequality)
+        if not own_change.terms:
+            yield inequality
             continue
-        for other, its in changed:
-            share = _share(own, its)
+        for other, other_change in changed:
+            share = _share(own_change, other_change)
             if share is not None and share < 0:
-                yield Inequality(
-                    x.polynomial + other.polynomial.scaled(-share),
-                    x.strict or other.strict,
-                    f"(sum_ {x.written} (product_ {number(-share)} {other.written}))",
+                yield PolynomialInequality(
+                    inequality.polynomial + other.polynomial.scaled(-share),
+                    inequality.strict or other.strict,
+                    f"(sum_ {inequality.proof_text} (product_ {number(-share)} {other.proof_text}))",
                 )
-        changed.append((x, own))
+        changed.append((inequality, own_change))
 
 
 def _share(one: Polynomial[int], other: Polynomial[int]) -> Fraction | None:
-    """How often ``one`` contains ``other``, None where it is no multiple of it."""
+    """Return the factor q with ``one`` = q·``other``; None if it is no multiple."""
     monomial = min(one.terms)
     share = one.terms[monomial] / other.terms.get(monomial, Fraction(1))
     return None if (one - other.scaled(share)).terms else share
 
 
-def _independent(inequalities: Sequence[Inequality]) -> list[Inequality]:
-    """Without linear inequalities that follow from other linear ones, as a linear program in floats says."""
-    kept = list(inequalities)
-    for x in inequalities:
-        others = [y for y in kept if y is not x and y.polynomial.degree < 2]
-        if x.polynomial.degree < 2 and _follows(x, others):
-            kept.remove(x)
-    return kept
+def _independent(inequalities: Sequence[PolynomialInequality]) -> list[PolynomialInequality]:
+    """Return inequalities without linear ones that follow from others, by a linear program in floats."""
+    remaining = list(inequalities)
+    for inequality in inequalities:
+        others = [y for y in remaining if y is not inequality and y.polynomial.degree < 2]
+        if inequality.polynomial.degree < 2 and _follows(inequality, others):
+            remaining.remove(inequality)
+    return remaining
 
 
-def _follows(x: Inequality, others: Sequence[Inequality]) -> bool:
-    """Whether it is a sum of others and of numbers that are at least 0, above 0 where it is strict."""
+def _follows(x: PolynomialInequality, others: Sequence[PolynomialInequality]) -> bool:
+    """Return whether an inequality is a nonnegative combination of others and constants."""
     from scipy.optimize import linprog
 
     monomials = sorted({m for y in (x, *others) for m in y.polynomial.terms} | {()})
     columns = [[float(y.polynomial.terms.get(m, 0)) for y in others] + [float(not m)] for m in monomials]
     strict = [-float(y.strict) for y in others] + [-1.0]
     right = [float(x.polynomial.terms.get(m, 0)) for m in monomials]
-    found = linprog(strict, A_eq=columns, b_eq=right, method="highs-ds")
-    return bool(found.status == 3 or (found.status == 0 and (not x.strict or found.fun < -_SMALL)))
+    solution = linprog(strict, A_eq=columns, b_eq=right, method="highs-ds")
+    return bool(solution.status == 3 or (solution.status == 0 and (not x.strict or solution.fun < -_SMALL)))
 
 
 # --- scales --------------------------------------------------------------------------------------
 
 
 def _scaled(reduction: Reduction) -> Reduction:
-    """Variables and inequalities by powers of 2 that bring coefficients near 1, as solvers need them."""
+    """Scale variables and inequalities by powers of 2 to bring coefficients near 1, as solvers need."""
     polynomials = [x.polynomial for x in reduction.inequalities]
     polynomials += [x.polynomial for x in reduction.equations]
     powers = _powers(polynomials)
     scales = {v: Fraction(2) ** power for v, power in powers.items()}
 
-    def other(polynomial: Polynomial[int]) -> Polynomial[int]:
+    def rescale(polynomial: Polynomial[int]) -> Polynomial[int]:
         return polynomial.substitute(lambda x: variable(x).scaled(scales[x]))
 
-    def near_one(x: Inequality) -> Inequality:
-        polynomial = other(x.polynomial)
+    def near_one(x: PolynomialInequality) -> PolynomialInequality:
+        """Return the inequality with its largest coefficient near 1."""
+        polynomial = rescale(x.polynomial)
         top = max(abs(q) for q in polynomial.terms.values())
         scale = Fraction(2) ** -round(log2(top))
         return replace(x, polynomial=polynomial.scaled(scale), scale=scale)
@@ -294,13 +308,13 @@ def _scaled(reduction: Reduction) -> Reduction:
     forms = {v: reduction.lift(variable(v)).scaled(1 / scale) for v, scale in scales.items()}
     return Reduction(
         tuple(map(near_one, reduction.inequalities)),
-        tuple(replace(x, polynomial=other(x.polynomial)) for x in reduction.equations),
+        tuple(replace(x, polynomial=rescale(x.polynomial)) for x in reduction.equations),
         forms,
     )
 
 
 def _powers(polynomials: Sequence[Polynomial[int]]) -> dict[int, int]:
-    """By least squares of logarithms: a power for each variable, with one number for each polynomial."""
+    """Return a power of 2 for each variable, by least squares of logarithms of the coefficients."""
     import numpy as np
 
     variables = sorted({v for x in polynomials for v in x.variables})
@@ -313,5 +327,5 @@ def _powers(polynomials: Sequence[Polynomial[int]]) -> dict[int, int]:
             right.append(-log2(abs(q)))
     if not rows:
         return {}
-    found = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0]
-    return {v: round(float(x)) for v, x in zip(variables, found, strict=False)}
+    powers = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0]
+    return {v: round(float(x)) for v, x in zip(variables, powers, strict=False)}

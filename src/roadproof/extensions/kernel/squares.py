@@ -1,9 +1,9 @@
-"""What contradicts among polynomial constraints: products of them times sums of squares that add up to 0 < 0.
+"""Contradictions of polynomial constraints: products times sums of squares that add up to 0 < 0.
 
-Equations and directions without effect are removed first (``reduction.py``). Gram matrices of the squares
-are found in floats by semidefinite programming (Putinar, Schmüdgen). Their eigenvectors, rounded, are the
-roots of squares for the linear program of ``cone.py``, whose multipliers are exact. Not trusted: Coq adds
-them up again.
+Equations and directions without effect are removed first (``reduction.py``). Semidefinite programming finds
+Gram matrices of the squares in floats (Putinar, Schmüdgen). Their rounded eigenvectors are the roots of
+squares for the linear program of ``cone.py``, whose multipliers are exact. Not trusted: Coq adds them up
+again.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -16,18 +16,23 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from roadproof.extensions.kernel.cone import (
-    Column,
     Constraint,
     Monomial,
     Parts,
+    ProductColumn,
     coq,
     joined,
     monomials,
     number,
-    solved,
+    solve_multipliers,
     whole_factor,
 )
-from roadproof.extensions.kernel.reduction import Equation, Inequality, Reduction, reduce_constraints
+from roadproof.extensions.kernel.reduction import (
+    PolynomialEquation,
+    PolynomialInequality,
+    Reduction,
+    reduce_constraints,
+)
 from roadproof.world.polynomial import Polynomial, constant
 
 if TYPE_CHECKING:
@@ -47,7 +52,7 @@ _Floats: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.float64]]"
 
 @dataclass(frozen=True)
 class _Block:
-    """A product of inequalities times a sum of squares of sums of ``basis``.
+    """A product of inequalities times a sum of squares of polynomials over ``basis``.
 
     ``polynomial`` is ``scale`` times the product of the ``factors``.
     """
@@ -60,57 +65,57 @@ class _Block:
 
     @property
     def entries(self) -> list[tuple[int, int]]:
-        """Of its Gram matrix, the upper triangle by columns."""
+        """The upper triangle of its Gram matrix, by columns."""
         return [(i, j) for j in range(len(self.basis)) for i in range(j + 1)]
 
 
 def contradiction(constraints: Sequence[Constraint]) -> str | None:
-    """A sum of products and squares that is absurd, for Coq; None where none is found."""
+    """Return an absurd sum of products and squares as text for Coq; None if none is found."""
     try:
         reduction = reduce_constraints(constraints)
-        found = next((x for d in DEGREES if (x := _of_degree(reduction, d)) is not None), None)
-        return found or _of_products(reduction)
+        text = next((x for d in DEGREES if (x := _of_degree(reduction, d)) is not None), None)
+        return text or _of_products(reduction)
     except OverflowError:  # a number that no float has
         return None
 
 
 def _of_degree(reduction: Reduction, degree: int) -> str | None:
-    """The same with products of at most a degree."""
+    """Return an absurd sum with products of at most a degree; None if none is found."""
     blocks = list(islice(_blocks(reduction.inequalities, degree), MOST_BLOCKS + 1))
     if len(blocks) > MOST_BLOCKS:
         return None
     free = [*_multiples(reduction, degree)]
     plain = [_column(x, None, reduction) for x in blocks]
     plain += [_column(x, Polynomial({m: Fraction(1)}), reduction) for x in blocks for m in x.basis if m]
-    parts = solved([*free, *plain])
+    parts = solve_multipliers([*free, *plain])
     grams = None if parts is not None else _semidefinite(blocks, free)
     for grid in GRIDS if grams is not None else ():
         squares = [_column(x, root, reduction) for x, root in _roots(blocks, grams or [], grid)]
-        parts = solved([*free, *plain, *squares])
+        parts = solve_multipliers([*free, *plain, *squares])
         if parts is not None:
             break
     if parts is None:
         return None
-    return _written(parts)
+    return _text_of(parts)
 
 
-def _written(parts: Parts) -> str:
+def _text_of(parts: Parts) -> str:
     whole = whole_factor(q for _, q in parts)
-    return joined("sum_", [x.written(q * whole, str) for x, q in parts])
+    return joined("sum_", [x.proof_text(q * whole, str) for x, q in parts])
 
 
 def _of_products(reduction: Reduction) -> str | None:
-    """A sum of products alone, of a higher degree and of more factors."""
+    """Return an absurd sum of products alone, with a higher degree and more factors."""
     products = list(islice(_products(reduction.inequalities), MOST_PRODUCTS + 1))
     if len(products) > MOST_PRODUCTS:
         return None
     columns = [*_multiples(reduction, HIGHEST), *(_column(x, None, reduction) for x in products)]
-    parts = solved(columns)
-    return None if parts is None else _written(parts)
+    parts = solve_multipliers(columns)
+    return None if parts is None else _text_of(parts)
 
 
-def _products(inequalities: Sequence[Inequality]) -> Iterator[_Block]:
-    """Of at most two inequalities that are not linear, with at most two repetitions."""
+def _products(inequalities: Sequence[PolynomialInequality]) -> Iterator[_Block]:
+    """Yield products of inequalities: at most two nonlinear factors and two repetitions."""
     for count in range(MOST_FACTORS + 2):
         for chosen in combinations_with_replacement(inequalities, count):
             degrees = [x.polynomial.degree for x in chosen]
@@ -120,7 +125,7 @@ def _products(inequalities: Sequence[Inequality]) -> Iterator[_Block]:
                 yield _product(chosen, ())
 
 
-def _blocks(inequalities: Sequence[Inequality], degree: int) -> Iterator[_Block]:
+def _blocks(inequalities: Sequence[PolynomialInequality], degree: int) -> Iterator[_Block]:
     variables = sorted({v for x in inequalities for v in x.polynomial.variables})
     for count in range(MOST_FACTORS + 1):
         for chosen in combinations_with_replacement(inequalities, count):
@@ -133,37 +138,37 @@ def _blocks(inequalities: Sequence[Inequality], degree: int) -> Iterator[_Block]
             yield _product(chosen, basis[:1] if repeated else basis)
 
 
-def _product(chosen: Sequence[Inequality], basis: tuple[Monomial, ...]) -> _Block:
+def _product(chosen: Sequence[PolynomialInequality], basis: tuple[Monomial, ...]) -> _Block:
     product: Polynomial[int] = constant(Fraction(1))
     for x in chosen:
         product = product * x.polynomial
     return _Block(
         product,
         all(x.strict for x in chosen),
-        tuple(x.written for x in chosen),
+        tuple(x.proof_text for x in chosen),
         prod((x.scale for x in chosen), start=Fraction(1)),
         basis,
     )
 
 
-def _multiples(reduction: Reduction, degree: int) -> Iterator[Column]:
+def _multiples(reduction: Reduction, degree: int) -> Iterator[ProductColumn]:
     variables = sorted({v for x in reduction.inequalities for v in x.polynomial.variables})
-    for x in reduction.equations:
-        for monomial in monomials(variables, degree - x.polynomial.degree):
-            yield _multiple(x, Polynomial({monomial: Fraction(1)}), reduction)
+    for equation in reduction.equations:
+        for monomial in monomials(variables, degree - equation.polynomial.degree):
+            yield _multiple(equation, Polynomial({monomial: Fraction(1)}), reduction)
 
 
-def _multiple(equation: Equation, factor: Polynomial[int], reduction: Reduction) -> Column:
-    def written(q: Fraction, _: Callable[[int], str]) -> str:
+def _multiple(equation: PolynomialEquation, factor: Polynomial[int], reduction: Reduction) -> ProductColumn:
+    def proof_text(q: Fraction, _: Callable[[int], str]) -> str:
         return equation.times(reduction.lift(factor).scaled(q))
 
-    return Column(equation.polynomial * factor, False, True, (), written)
+    return ProductColumn(equation.polynomial * factor, False, True, (), proof_text)
 
 
-def _column(block: _Block, root: Polynomial[int] | None, reduction: Reduction) -> Column:
-    """A block times a square, or times 1."""
+def _column(block: _Block, root: Polynomial[int] | None, reduction: Reduction) -> ProductColumn:
+    """Return a block times a square, or times 1."""
 
-    def written(q: Fraction, _: Callable[[int], str]) -> str:
+    def proof_text(q: Fraction, _: Callable[[int], str]) -> str:
         return joined("product_", [number(q * weight), *block.factors, *square])
 
     weight = block.scale
@@ -174,7 +179,7 @@ def _column(block: _Block, root: Polynomial[int] | None, reduction: Reduction) -
         square.append(f"(square_ {coq(lifted.scaled(whole))})")
         weight /= whole**2
     polynomial = block.polynomial if root is None else block.polynomial * root * root
-    return Column(polynomial, block.strict and root is None, False, (), written)
+    return ProductColumn(polynomial, block.strict and root is None, False, (), proof_text)
 
 
 # --- Gram matrices -------------------------------------------------------------------------------
@@ -183,20 +188,20 @@ def _column(block: _Block, root: Polynomial[int] | None, reduction: Reduction) -
 def _roots(
     blocks: Sequence[_Block], grams: Sequence[_Floats], grid: int
 ) -> Iterator[tuple[_Block, Polynomial[int]]]:
-    """Sums of basis monomials of which squares are likely to be needed: eigenvectors, and sums of two."""
+    """Yield likely roots of squares: eigenvectors, and sums and differences of two."""
     for block, gram in zip(blocks, grams, strict=True):
         if len(block.basis) == 1:
             continue
         values, vectors = np.linalg.eigh(gram)
         top = max(float(values[-1]), 1e-12)
-        kept = [
+        roots = [
             _rounded(block.basis, vectors[:, k] / np.abs(vectors[:, k]).max(), grid)
             for k in range(len(values))
             if values[k] > _SMALL * max(top, 1.0)
         ]
-        yield from ((block, x) for x in kept)
-        for place, one in enumerate(kept):
-            for other in kept[:place]:
+        yield from ((block, x) for x in roots)
+        for place, one in enumerate(roots):
+            for other in roots[:place]:
                 yield block, one + other
                 yield block, one - other
 
@@ -206,8 +211,8 @@ def _rounded(basis: Sequence[Monomial], vector: _Floats, grid: int) -> Polynomia
     return Polynomial({m: q for m, q in terms.items() if q})
 
 
-def _semidefinite(blocks: Sequence[_Block], free: Sequence[Column]) -> list[_Floats] | None:
-    """Gram matrices of the blocks whose sum is 0, what is above 0 adding up to 1; None: none."""
+def _semidefinite(blocks: Sequence[_Block], free: Sequence[ProductColumn]) -> list[_Floats] | None:
+    """Return Gram matrices whose sum is 0, with strict parts adding up to 1; None if none exist."""
     import clarabel
     from scipy.sparse import csc_array, csc_matrix, vstack
 
@@ -225,8 +230,11 @@ def _semidefinite(blocks: Sequence[_Block], free: Sequence[Column]) -> list[_Flo
     settings.verbose = False
     settings.max_iter = MOST_ITERATIONS
     rows = csc_matrix(vstack([program.matrix, below]))
-    nothing, cost = csc_matrix((count, count)), np.zeros(count)  # what costs nothing is far from all edges
-    solver = clarabel.DefaultSolver(nothing, cost, rows, right, cones, settings)
+    no_quadratic_cost, cost = (
+        csc_matrix((count, count)),
+        np.zeros(count),
+    )  # what costs nothing is far from all edges
+    solver = clarabel.DefaultSolver(no_quadratic_cost, cost, rows, right, cones, settings)
     solution = solver.solve()
     if "Solved" not in str(solution.status):
         return None
@@ -237,23 +245,26 @@ def _semidefinite(blocks: Sequence[_Block], free: Sequence[Column]) -> list[_Flo
 
 @dataclass(frozen=True)
 class _Program:
-    """Sum of the columns by ``matrix``: the strict ones, ``one`` in all, in row 0; then a row a monomial."""
+    """The constraints of the semidefinite program: row 0 for strict columns, then a row a monomial.
+
+    Strict columns add up to ``one``.
+    """
 
     matrix: "csr_array"
     one: float
 
 
-def _program(blocks: Sequence[_Block], free: Sequence[Column]) -> _Program:
-    """Columns for multiples of equations, then for entries of Gram matrices; off the diagonal by sqrt 2."""
+def _program(blocks: Sequence[_Block], free: Sequence[ProductColumn]) -> _Program:
+    """Return columns for multiples of equations, then for Gram entries, scaled by sqrt 2 off the diagonal."""
     from scipy.sparse import csr_array, diags_array
 
     columns: list[tuple[Polynomial[int], float, bool]] = [(x.polynomial, 1.0, False) for x in free]
-    for x in blocks:
-        for i, j in x.entries:
-            monomial = tuple(sorted(x.basis[i] + x.basis[j]))
-            product = x.polynomial * Polynomial({monomial: Fraction(1)})
+    for block in blocks:
+        for i, j in block.entries:
+            monomial = tuple(sorted(block.basis[i] + block.basis[j]))
+            product = block.polynomial * Polynomial({monomial: Fraction(1)})
             weight = 1.0 if i == j else float(np.sqrt(2))
-            columns.append((product, weight, x.strict and not monomial))
+            columns.append((product, weight, block.strict and not monomial))
     rows: dict[Monomial, int] = {}
     entries: list[tuple[int, int, float]] = []
     for place, (polynomial, weight, strict) in enumerate(columns):
@@ -268,7 +279,7 @@ def _program(blocks: Sequence[_Block], free: Sequence[Column]) -> _Program:
 
 
 def _gram(block: _Block, values: _Floats) -> _Floats:
-    found = np.zeros((len(block.basis), len(block.basis)))
+    gram = np.zeros((len(block.basis), len(block.basis)))
     for (i, j), value in zip(block.entries, values, strict=False):
-        found[i, j] = found[j, i] = value if i == j else value / np.sqrt(2)
-    return found
+        gram[i, j] = gram[j, i] = value if i == j else value / np.sqrt(2)
+    return gram

@@ -1,7 +1,7 @@
-"""What a certificate claims, as Coq is to prove it, and the goal for a search of its tableau.
+"""The theorem of a certificate, as Coq must prove it, and the goal for the search of its tableau.
 
-The claim is read again with the library at hand. Limits that it is proved under become its premises. The
-tableau also supposes facts about motion and inductions, each made anew; proofs/kernel/Schemas.v proves them.
+The claim is read again with the library at hand. Assumed limits become premises. The tableau also uses facts
+about motion and inductions, each rebuilt here; proofs/kernel/Schemas.v proves them.
 """
 
 from collections.abc import Iterable, Mapping
@@ -14,15 +14,15 @@ from roadproof.evidence.derivation import met_sites
 from roadproof.evidence.times import bound_parameters
 from roadproof.extensions.kernel.branch import Goal
 from roadproof.extensions.kernel.printer import Formals
+from roadproof.library.assumption import Axiom
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import (
-    Axiom,
     assumption,
     axiom_arguments,
     axiom_formula,
     limit_formulas,
     value_texts,
-    values_said,
+    values_in,
 )
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.logic import formula as f
@@ -47,7 +47,7 @@ SCHEMAS: Mapping[str, str] = {
 
 @dataclass(frozen=True)
 class Instance:
-    """An instance of a schema: its name in Coq, and its ``arguments``, values of parameters put in."""
+    """An instance of a schema: its name in Coq, and its ``arguments`` with parameter values substituted."""
 
     schema: str
     arguments: tuple[Formula | Term, ...]
@@ -56,12 +56,12 @@ class Instance:
 
 @dataclass(frozen=True)
 class Statement:
-    """``formula`` is what Coq is to prove for all parameters within ``bounds`` (name: strictly above 0).
+    """The theorem that ``formula`` holds for all parameters within ``bounds`` (name: strictly above 0).
 
-    ``supposed``: what the tableau proves, with ``instances`` of schemas as further premises. ``lemmas``:
-    facts about one instant, with the moments at which the proof uses them. ``limits``: how many limits of
-    vehicles are premises. ``values`` of parameters, as words, are put in; those that are ``demanded`` by the
-    formula itself Coq puts in before it reads the tableau.
+    ``supposed``: the formula that the tableau proves, with ``instances`` of schemas as further premises.
+    ``lemmas``: facts about one instant, with the moments of their use. ``limits``: the number of limits of
+    vehicles among the premises. ``values``: assumed parameter values, as text. ``demanded``: values that the
+    formula itself demands; Coq substitutes them before it reads the tableau.
     """
 
     label: str
@@ -82,30 +82,32 @@ class Statement:
 
 
 def state(certificate: Certificate, library: Library, query: Query | None = None) -> Statement:
-    """What is to be proved, values of parameters that are assumed put in.
+    """Return the theorem of a certificate, with assumed parameter values substituted.
 
-    ``query``: the claim, where it need not be read again, since nobody rests on the statement.
-    Raises ``InputError`` where the certificate does not fit the library.
+    ``query``: the parsed claim, for callers that do not rely on the statement. Raises ``InputError`` if the
+    certificate does not fit the library.
     """
     specification = library.select(certificate.set_name, certificate.options)
     query = query or read_claim(specification, certificate.claim)
     assumed = certificate.assumed
-    here = values_said(specification, assumed.said)
+    assumed_values = values_in(specification, assumed.texts)
     limits, axioms = _premises(certificate, specification, query)
     formula, supposed = (
-        with_values(f.implication(f.conjunction(*premises), query.formula), here)
+        with_values(f.implication(f.conjunction(*premises), query.formula), assumed_values)
         for premises in (limits, [*limits, *axioms])
     )
-    demanded = values_said(specification, certificate.pinned)
-    atoms, proved = Atoms(reading=certificate.reading), with_values(supposed, demanded)
-    atoms.abstract(with_values(query.formula, {**here, **demanded}))  # named first, as in the certificate
-    abstracted = atoms.abstract(proved)
+    pinned_values = values_in(specification, certificate.pinned)
+    atoms, goal_formula = Atoms(reading=certificate.reading), with_values(supposed, pinned_values)
+    atoms.abstract(
+        with_values(query.formula, {**assumed_values, **pinned_values})
+    )  # named first, as in the certificate
+    abstracted = atoms.abstract(goal_formula)
     if any(name not in atoms.named for lemma in certificate.lemmas for name, _ in lemma.literals):
         # an atom inside a quantifier has its name once there is an instance
         sites = certificate.instances, certificate.names
         met_sites(abstracted, atoms, *sites, library.bounds, query.lanes)
     bounds = bounds_of(specification, parameters_of(supposed))
-    parameters = tuple(sorted(bound_parameters(proved)))
+    parameters = tuple(sorted(bound_parameters(goal_formula)))
     lemmas = tuple(
         (f.disjunction(*(_literal(atoms, *x) for x in lemma.literals)), lemma.moments)
         for lemma in certificate.lemmas
@@ -127,26 +129,26 @@ def state(certificate: Certificate, library: Library, query: Query | None = None
         dict(certificate.options),
         formula,
         supposed,
-        tuple(_instance(specification, query, x, here) for x in assumed.axioms),
+        tuple(_instance(specification, query, x, assumed_values) for x in assumed.axioms),
         bounds,
         lemmas,
         parameters,
         formals_of(specification),
         len(limits),
-        value_texts(specification, here),
-        demanded,
+        value_texts(specification, assumed_values),
+        pinned_values,
         goal,
     )
 
 
 def bounds_of(specification: Specification, names: Iterable[str]) -> dict[str, bool]:
-    """Of the parameters that are bounded, whether they are strictly above 0."""
+    """Return for each bounded parameter whether it is strictly above 0."""
     declared = specification.library.bounds
     return {name: declared[name] == ">" for name in names if declared.get(name)}
 
 
 def formals_of(specification: Specification) -> Formals:
-    """What each definition calls its arguments."""
+    """Return the names and sorts of each definition's arguments."""
     return {
         name: tuple((x.name, str(x.sort)) for x in definition.parameters)
         for name, definition in specification.definitions.items()
@@ -156,17 +158,17 @@ def formals_of(specification: Specification) -> Formals:
 def _premises(
     certificate: Certificate, specification: Specification, query: Query
 ) -> tuple[list[Formula], list[Formula]]:
-    """The limits that are premises, and the instances of schemas, each with a name of its own."""
+    """Return the limits that are premises, and the instances of schemas, each under a name of its own."""
     assumed = certificate.assumed
     assumption(specification, query, assumed)  # nothing else may be assumed
     limits = limit_formulas(specification, query, assumed).values()
-    words = ["induction" if x.is_induction else "motion" for x in assumed.axioms]
+    kinds = ["induction" if x.is_induction else "motion" for x in assumed.axioms]
     axioms = (axiom_formula(specification, query, x) for x in assumed.axioms)
-    named = [*(("limit", x) for x in limits), *zip(words, axioms, strict=True)]
-    made: list[Formula] = [
+    named = [*(("limit", x) for x in limits), *zip(kinds, axioms, strict=True)]
+    premises: list[Formula] = [
         f.Application(f"{word}_{number}", (), x) for number, (word, x) in enumerate(named, 1)
     ]
-    return made[: len(limits)], made[len(limits) :]
+    return premises[: len(limits)], premises[len(limits) :]
 
 
 def _instance(

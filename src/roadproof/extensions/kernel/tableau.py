@@ -1,8 +1,8 @@
 """Tableaux: trees of rules that proofs/kernel/Tableau.v checks. Their lines are part of certificates.
 
-A line is a node, in the order parent, first child, second child: the name of its rule, then what the rule is
-told. Facts, constraints and moments are numbered in each branch as they come. Nothing here is trusted: lines
-of any content become a tree or a refusal, and Coq checks the tree.
+A line is a node: the name of its rule, then its arguments; parents come before children. Facts, constraints
+and moments are numbered in each branch in order of appearance. Nothing here is trusted: any lines become a
+tree or an error, and Coq checks the tree.
 """
 
 import re
@@ -40,7 +40,7 @@ _RULES: Mapping[TableauRule, tuple[str, int]] = {
     "Cut": ("m", 2),
     "Fact": ("im", 1),
 }
-RULES: Mapping[str, tuple[str, int]] = {str(name): told for name, told in _RULES.items()}
+RULES: Mapping[str, tuple[str, int]] = {str(name): shape for name, shape in _RULES.items()}
 assert {*RULES} == {*get_args(TableauRule)}  # the rules that certificates may name
 MOST_NODES = 50_000
 WIDTH = 110  # of a line of Coq
@@ -50,8 +50,8 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,99}", re.ASCII)
 
 
 @dataclass(frozen=True)
-class Node:
-    """A rule with what it is told; its children come after it."""
+class TableauNode:
+    """A rule with its arguments; its children follow it."""
 
     rule: str
     arguments: tuple[Argument, ...]
@@ -62,21 +62,21 @@ class Node:
 
 
 # A tree, written parent first.
-Tableau: TypeAlias = tuple[Node, ...]
+Tableau: TypeAlias = tuple[TableauNode, ...]
 
 
 def lines(tableau: Tableau) -> tuple[str, ...]:
-    """A tableau as text, a line a node."""
+    """Return a tableau as lines, one for each node."""
     return tuple(_line(node) for node in tableau)
 
 
-def read_lines(written: Sequence[str]) -> Tableau:
-    """The inverse of ``lines``. Raises ``InputError`` for what is no tree of rules."""
-    if len(written) > MOST_NODES:
-        raise InputError(f"a tableau of {len(written)} nodes; at most {MOST_NODES} are read")
-    nodes: list[Node] = []
+def read_lines(tableau_lines: Sequence[str]) -> Tableau:
+    """Return the tableau of its lines, the inverse of ``lines``. Raises ``InputError`` for other lines."""
+    if len(tableau_lines) > MOST_NODES:
+        raise InputError(f"a tableau of {len(tableau_lines)} nodes; at most {MOST_NODES} are read")
+    nodes: list[TableauNode] = []
     open_places = 1
-    for number, line in enumerate(written, 1):
+    for number, line in enumerate(tableau_lines, 1):
         if open_places == 0:
             raise InputError(f"line {number} of the tableau comes after its end: {line[:60]!r}")
         node = _read(line, number)
@@ -87,7 +87,7 @@ def read_lines(written: Sequence[str]) -> Tableau:
     return tuple(nodes)
 
 
-def _line(node: Node) -> str:
+def _line(node: TableauNode) -> str:
     kinds = RULES[node.rule][0]
     return " ".join([node.rule, *(_text(k, x) for k, x in zip(kinds, node.arguments, strict=True))])
 
@@ -99,18 +99,20 @@ def _text(kind: str, argument: Argument) -> str:
     return str(argument)
 
 
-def _read(line: str, number: int) -> Node:
+def _read(line: str, number: int) -> TableauNode:
     rule, *words = line.split(" ")
     if rule not in RULES or len(words) != len(RULES[rule][0]):
         raise InputError(f"line {number} of the tableau is no rule with what it is told: {line[:60]!r}")
     try:
-        return Node(rule, tuple(_argument(k, word) for k, word in zip(RULES[rule][0], words, strict=True)))
+        return TableauNode(
+            rule, tuple(_argument(k, word) for k, word in zip(RULES[rule][0], words, strict=True))
+        )
     except ValueError:
         raise InputError(f"line {number} of the tableau is not read: {line[:60]!r}") from None
 
 
 def _argument(kind: str, word: str) -> Argument:
-    """Raises ``ValueError``."""
+    """Return an argument of a rule. Raises ``ValueError``."""
     match kind:
         case "i":
             return int(_only(_WHOLE, word))
@@ -118,7 +120,7 @@ def _argument(kind: str, word: str) -> Argument:
             return _only(_NAME, word)
         case "m":
             return tuple(map(_rational, _items(word)))
-        case _:
+        case _:  # open: a character of _RULES, here w
             return tuple(map(_multiplier, _items(word)))
 
 
@@ -145,7 +147,7 @@ def _only(pattern: re.Pattern[str], word: str) -> str:
 
 
 def coq_tree(tableau: Tableau) -> Iterator[str]:
-    """The tableau as a term of Tableau.v, in lines."""
+    """Yield the lines of a tableau as a term of Tableau.v."""
     line = ""
     waiting: list[int] = []  # children that the nodes above still lack
     for node in tableau:

@@ -1,4 +1,4 @@
-"""A drive or a trace as a term of proofs/kernel/Drive.v. Trusted: it says what is proved."""
+"""A drive or a trace as a term of proofs/kernel/Drive.v. Trusted: it is part of the theorem."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -34,13 +34,16 @@ ANYWHERE = Road(
 
 
 def road_with_lanelets(road: Road | None) -> Road:
-    """The road, or one of one lanelet where it has none."""
+    """Return the road, or a road of one lanelet if it has none."""
     return road if road is not None and road.lanelets else ANYWHERE
 
 
 @dataclass(frozen=True)
-class Course:
-    """As `course` of Drive.v: ``pieces`` are durations with acceleration and jerk, ``last`` is for ever."""
+class AxisTrajectory:
+    """A motion along one axis (``course`` of Drive.v): ``pieces`` have duration, acceleration and jerk.
+
+    ``last`` is the acceleration after them, for ever.
+    """
 
     place: Fraction
     speed: Fraction
@@ -50,10 +53,10 @@ class Course:
 
 @dataclass(frozen=True)
 class World:
-    """Vehicles on a road that has lanelets, and signals in steps; all others are those of the motions.
+    """Vehicles on a road with lanelets, and signals in steps; all other signals are those of the motions.
 
-    ``lanes``: the lane of the road that a name of the claim stands for. ``values``: of parameters;
-    ``numbers``: of those that the claim speaks of. ``repeats``: from when on signals repeat, and how often.
+    ``lanes``: the lane of the road for each lane name of the claim. ``values``: of parameters. ``numbers``:
+    of variables. ``repeats``: the loop of the signals, if they repeat.
     """
 
     vehicles: Mapping[str, Motion]
@@ -66,13 +69,13 @@ class World:
 
 
 def world_lines(world: World) -> Iterator[str]:
-    """Raises ``InputError`` for names that are not printed."""
+    """Yield the lines of a world. Raises ``InputError`` for names that cannot be printed."""
     yield "{|"
     yield from _field("bodies", [_body(name, motion) for name, motion in world.vehicles.items()])
     first, *others = map(_rectangle, world.road.lanelets)
     yield f"  first_rectangle := {first};"
     yield from _field("other_rectangles", others)
-    yield from _field("beside", [_pair(quoted(a), quoted(b)) for a, b in beside(world.road)])
+    yield from _field("beside", [_pair(quoted(a), quoted(b)) for a, b in adjacent_pairs(world.road)])
     yield from _field("lanes_named", [_pair(literal(a), quoted(b)) for a, b in sorted(world.lanes.items())])
     yield from _field("values", _numbers(world.values))
     yield from _field("signals", [_signal(*x) for x in world.steps.items()])
@@ -103,9 +106,10 @@ def _pair(one: str, other: str) -> str:
     return f"({one}, {other})"
 
 
-def beside(road: Road) -> list[tuple[str, str]]:
-    found = sorted(tuple(sorted(pair)) for pair in road.adjacent)
-    return [(a, b) for a, b in found]
+def adjacent_pairs(road: Road) -> list[tuple[str, str]]:
+    """Return the pairs of adjacent lanes, sorted."""
+    ordered = sorted(tuple(sorted(pair)) for pair in road.adjacent)
+    return [(a, b) for a, b in ordered]
 
 
 def _rectangle(x: Lanelet) -> str:
@@ -117,13 +121,15 @@ def _rectangle(x: Lanelet) -> str:
 
 
 def _signal(signal: t.Varying, steps: Steps) -> str:
-    word = f"Own {literal(signal.name)}" if isinstance(signal, t.Own) else WORDS_OF_SIGNALS[signal.name]
+    word = (
+        f"Own {literal(signal.name)}" if isinstance(signal, t.CustomSignal) else WORDS_OF_SIGNALS[signal.name]
+    )
     shown = "; ".join(f"({', '.join(map(rational, step))})" for step in steps)
     return f"({word}, {quoted(signal.vehicle)}, [{shown}])"
 
 
 def _body(name: str, motion: Motion) -> str:
-    along, across = map(_course, courses(motion))
+    along, across = map(_course, axis_trajectories(motion))
     return (
         f"({literal(name)}, {{| is_a := {motion.kind or 'other'};\n"
         f"      long := {rational(motion.length)}; wide := {rational(motion.width)};\n"
@@ -132,7 +138,7 @@ def _body(name: str, motion: Motion) -> str:
     )
 
 
-def _course(course: Course) -> str:
+def _course(course: AxisTrajectory) -> str:
     shown = [f"({', '.join(map(rational, piece))})" for piece in course.pieces]
     return (
         f"{{| starts_at := {rational(course.place)}; starts_with := {rational(course.speed)};\n"
@@ -140,13 +146,13 @@ def _course(course: Course) -> str:
     )
 
 
-def courses(motion: Motion) -> tuple[Course, Course]:
-    """How a vehicle moves along the road, and across it."""
+def axis_trajectories(motion: Motion) -> tuple[AxisTrajectory, AxisTrajectory]:
+    """Return the motion of a vehicle along the road, and across it."""
     *before, last = motion.pieces
     timed = [(x.duration, x) for x in before if x.duration is not None]
     along = tuple((time, x.a_lon, x.j_lon) for time, x in timed)
     across = tuple((time, x.a_lat, Fraction(0)) for time, x in timed)
     return (
-        Course(motion.s, motion.v_lon, along, last.a_lon),
-        Course(motion.d, motion.v_lat, across, last.a_lat),
+        AxisTrajectory(motion.s, motion.v_lon, along, last.a_lon),
+        AxisTrajectory(motion.d, motion.v_lat, across, last.a_lat),
     )

@@ -16,8 +16,8 @@ from functools import partial
 from itertools import pairwise
 
 from roadproof.errors import InputError
-from roadproof.extensions.maps.opendrive import MapLane, MapRoad, MapSection, Piece, Polynomials
-from roadproof.extensions.maps.polynomials import extremes, total
+from roadproof.extensions.maps.opendrive import CubicPiece, MapLane, MapRoad, MapSection, Polynomials
+from roadproof.extensions.maps.polynomials import extremes, sum_of_cubics
 from roadproof.world.curves import Coefficients
 from roadproof.world.road import Attribute, Lanelet, Zone
 
@@ -64,11 +64,11 @@ class DirectedRoad:
         return -1 if self.forward == (self.road.rule == "RHT") else 1
 
     def s(self, s: Fraction) -> Fraction:
-        """Along the way, from s of the map."""
+        """Return s along the way, from s of the map."""
         return self.base + (s if self.forward else self.road.length - s)
 
     def d(self, d: Fraction) -> Fraction:
-        """To the left of the way, from d of the map."""
+        """Return d to the left of the way, from d of the map."""
         return (d if self.forward else -d) - self.shift
 
 
@@ -116,7 +116,7 @@ def carriageway(ways: tuple[DirectedRoad, ...], step: Fraction) -> Carriageway:
     return Carriageway(lanelets, max((x.error for x in steps), default=Fraction(0)))
 
 
-def driven(section: MapSection, side: int) -> list[MapLane]:
+def driven_lanes(section: MapSection, side: int) -> list[MapLane]:
     """Lanes on one side that vehicles drive on, from the reference line outwards."""
     lanes = (section.lanes[x] for x in sorted(section.lanes, key=abs) if x * side > 0)
     return [x for x in lanes if x.type in DRIVEN or x.type in RAMPS]
@@ -129,7 +129,7 @@ def _steps(way: DirectedRoad, step: Fraction) -> Iterator[_Step]:
         where = f"{way.road.where}, laneSection {number}"
         lanes = [section.lanes[x] for x in sorted(section.lanes, key=abs) if x * way.side > 0]
         _check_types(lanes, where)
-        places = _places(way.road.offset, lanes, section, step)
+        places = _places_of_change(way.road.offset, lanes, section, step)
         if not way.forward:
             places = places[::-1]
         for begin, end in pairwise(places):
@@ -153,48 +153,50 @@ def _check_types(lanes: list[MapLane], where: str) -> None:
 
 def _edges(offset: Polynomials, lanes: list[MapLane], begin: Fraction) -> list[Coefficients]:
     """The reference edge and the outer edge of each lane, by the distance from ``begin``."""
-    pieces = [(1, _there(offset, begin))] if offset else []
-    edges = [total(pieces, begin)]
+    pieces = [(1, _piece_at(offset, begin))] if offset else []
+    edges = [sum_of_cubics(pieces, begin)]
     for lane in lanes:
         if lane.border:
-            pieces = [(1, _there(lane.border, begin))]
+            pieces = [(1, _piece_at(lane.border, begin))]
         else:
-            pieces.append((1 if lane.id > 0 else -1, _there(lane.width, begin)))
-        edges.append(total(pieces, begin))
+            pieces.append((1 if lane.id > 0 else -1, _piece_at(lane.width, begin)))
+        edges.append(sum_of_cubics(pieces, begin))
     return edges
 
 
-def _there(pieces: Polynomials, s: Fraction) -> Piece:
+def _piece_at(pieces: Polynomials, s: Fraction) -> CubicPiece:
     """The piece that holds from ``s`` on: the last that has begun, or the first."""
     return next((x for x in reversed(pieces) if x.s <= s), pieces[0])
 
 
-def _places(offset: Polynomials, lanes: list[MapLane], section: MapSection, step: Fraction) -> list[Fraction]:
+def _places_of_change(
+    offset: Polynomials, lanes: list[MapLane], section: MapSection, step: Fraction
+) -> list[Fraction]:
     """Places between which no edge changes by more than ``step``."""
     begins = {x.s for pieces in (offset, *(x.width or x.border for x in lanes)) for x in pieces}
     ends = [section.begin, *sorted(x for x in begins if section.begin < x < section.end), section.end]
-    found = [section.begin]
+    places = [section.begin]
     for begin, end in pairwise(ends):
-        found += _divided(_edges(offset, lanes, begin), begin, (Fraction(0), end - begin), step)
-    return found
+        places += _divide(_edges(offset, lanes, begin), begin, (Fraction(0), end - begin), step)
+    return places
 
 
-def _divided(
+def _divide(
     edges: list[Coefficients], begin: Fraction, part: tuple[Fraction, Fraction], step: Fraction
 ) -> list[Fraction]:
     low, high = part
-    moved = [total([(1, Piece(Fraction(0), x))], low) for x in edges]
+    moved = [sum_of_cubics([(1, CubicPiece(Fraction(0), x))], low) for x in edges]
     changes = (extremes(x, high - low) for x in moved)
     if high - low <= _SHORTEST or all(most - least <= step for least, most in changes):
         return [begin + high]
     middle = (low + high) / 2
-    return [*_divided(edges, begin, (low, middle), step), *_divided(edges, begin, (middle, high), step)]
+    return [*_divide(edges, begin, (low, middle), step), *_divide(edges, begin, (middle, high), step)]
 
 
 def _constant_edges(
     way: DirectedRoad, lanes: list[MapLane], part: tuple[Fraction, Fraction]
 ) -> tuple[list[Fraction], Fraction]:
-    """d of the edges from the reference line outwards, and how far (m) they are at most from the lanes'."""
+    """Return d of the edges from the line outwards, and their largest distance (m) to the lanes' edges."""
     places, error = [], Fraction(0)
     for edge in _edges(way.road.offset, lanes, part[0]):
         least, most = extremes(edge, part[1] - part[0])
@@ -227,8 +229,8 @@ def _lanelets(steps: list[_Step]) -> Iterator[Lanelet]:
         before = steps[k - 1] if k else None
         zone: Zone = next((_ZONES[x.attribute] for x in step.strips if x.attribute != "main"), "main")
         for strip in reversed(step.strips):
-            ends = [x for x in before.strips if _goes_on(before, x, step, strip)] if before else []
-            ends.sort(key=partial(_apart, strip))
+            ends = [x for x in before.strips if _continues(before, x, step, strip)] if before else []
+            ends.sort(key=partial(_doubled_distance, strip))
             known = [name for name in (names[k - 1][x.id] for x in ends) if name not in names[k].values()]
             if not known:
                 counts[strip.attribute] += 1
@@ -239,7 +241,7 @@ def _lanelets(steps: list[_Step]) -> Iterator[Lanelet]:
             yield Lanelet(f"{name}{letter}", name, strip.zone or zone, strip.attribute, step.s, strip.d)
 
 
-def _apart(one: _Strip, other: _Strip) -> Fraction:
+def _doubled_distance(one: _Strip, other: _Strip) -> Fraction:
     """Twice the distance (m) between the middles of two strips."""
     return abs(one.d[0] + one.d[1] - other.d[0] - other.d[1])
 
@@ -263,7 +265,7 @@ def _without_tips(lanelets: tuple[Lanelet, ...]) -> tuple[Lanelet, ...]:
     return tuple(x for x in lanelets if x.id not in dropped)
 
 
-def _goes_on(one: _Step, before: _Strip, other: _Step, strip: _Strip) -> bool:
+def _continues(one: _Step, before: _Strip, other: _Step, strip: _Strip) -> bool:
     if before.attribute != strip.attribute:
         return False
     if one.section == other.section:

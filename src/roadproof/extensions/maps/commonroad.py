@@ -11,8 +11,15 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.extensions.maps.harmless import COMMONROAD_MAP
 from roadproof.extensions.maps.topology import Floats, MeasuredLanelet
-from roadproof.runtime.xml_element import text_of
-from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml, summary_of, unread
+from roadproof.extensions.maps.xml_element import text_of
+from roadproof.extensions.maps.xml_reader import (
+    Element,
+    by_id,
+    number_in,
+    parts_not_read,
+    read_xml,
+    summary_of,
+)
 from roadproof.world.road import Attribute
 
 SAME = 0.05
@@ -31,10 +38,10 @@ def read_map(path: Path) -> tuple[dict[str, MeasuredLanelet], tuple[str, ...]]:
     root = read_xml(path, "commonRoad")
     version = root.get("commonRoadVersion")
     if version not in VERSIONS:
-        told = f"commonRoadVersion={version}: commonRoad of version {' or '.join(VERSIONS)} is needed"
-        raise InputError(f"{path}: {told}")
+        problem = f"commonRoadVersion={version}: commonRoad of version {' or '.join(VERSIONS)} is needed"
+        raise InputError(f"{path}: {problem}")
     lanelets = lanelets_of(path, root)
-    return lanelets, summary_of(unread(root, COMMONROAD_MAP))
+    return lanelets, summary_of(parts_not_read(root, COMMONROAD_MAP))
 
 
 def lanelets_of(path: Path, root: Element) -> dict[str, MeasuredLanelet]:
@@ -47,7 +54,7 @@ def lanelets_of(path: Path, root: Element) -> dict[str, MeasuredLanelet]:
 
 def _with_neighbours(lanelets: Mapping[str, MeasuredLanelet]) -> dict[str, MeasuredLanelet]:
     """The lanelets, with those beside them in the same direction whose bound is theirs."""
-    found: dict[str, list[str]] = {name: [] for name in lanelets}
+    neighbours: dict[str, list[str]] = {name: [] for name in lanelets}
     ends: dict[tuple[int, ...], list[str]] = defaultdict(list)
     for x in lanelets.values():
         ends[_cell(x.right[0])].append(x.id)
@@ -56,10 +63,10 @@ def _with_neighbours(lanelets: Mapping[str, MeasuredLanelet]) -> dict[str, Measu
         near = [y for i in (-1, 0, 1) for j in (-1, 0, 1) for y in ends.get((row + i, column + j), ())]
         for other in near:
             if other != x.id and other not in x.beside and _same_line(x.left, lanelets[other].right):
-                found[x.id].append(other)
-                found[other].append(x.id)
+                neighbours[x.id].append(other)
+                neighbours[other].append(x.id)
     return {
-        name: replace(x, beside=(*x.beside, *found[name]), by_bound=tuple(found[name]))
+        name: replace(x, beside=(*x.beside, *neighbours[name]), by_bound=tuple(neighbours[name]))
         for name, x in lanelets.items()
     }
 
@@ -70,7 +77,7 @@ def _cell(point: Floats) -> tuple[int, int]:
 
 
 def _same_line(one: Floats, other: Floats) -> bool:
-    """Whether two lines have the same ends and the same points between them, up to SAME."""
+    """Return whether two lines have the same ends and the same points between them, up to SAME."""
     if np.hypot(*(one[[0, -1]] - other[[0, -1]]).T).max() > SAME:
         return False
     shares = [np.append(0, np.cumsum(np.hypot(*np.diff(x, axis=0).T))) for x in (one, other)]
@@ -94,11 +101,11 @@ def _read_lanelet(path: Path, node: Element, known: Mapping[str, Element]) -> Me
     _read_users(node)
 
     def refs(*tags: str) -> tuple[str, ...]:
-        found = [x for tag in tags for x in node.findall(tag)]
-        for x in found:
+        links = [x for tag in tags for x in node.findall(tag)]
+        for x in links:
             if x.get("ref") not in known:
                 raise InputError(f"{path}: {where}: {x.tag} {x.get('ref')} is no lanelet of the file")
-        return tuple(x.get("ref", "") for x in found if x.get("drivingDir", "same") == "same")
+        return tuple(x.get("ref", "") for x in links if x.get("drivingDir", "same") == "same")
 
     refs("predecessor")
     attribute = next((ATTRIBUTES[x] for x in sorted(types) if x in ATTRIBUTES), None)

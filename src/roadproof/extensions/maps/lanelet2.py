@@ -23,7 +23,14 @@ from roadproof.extensions.maps.harmless import LANELET2, OSM_KEYS
 from roadproof.extensions.maps.lines import resampled
 from roadproof.extensions.maps.projections import UtmPoint, transverse_mercator, utm_of
 from roadproof.extensions.maps.topology import Floats, MeasuredLanelet
-from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml, summary_of, unread
+from roadproof.extensions.maps.xml_reader import (
+    Element,
+    by_id,
+    number_in,
+    parts_not_read,
+    read_xml,
+    summary_of,
+)
 
 ROADS = frozenset(("road", "highway"))
 """Subtypes of lanelets that vehicles drive on along a road."""
@@ -36,7 +43,7 @@ _NO_LANELETS = {"regulatory_element": "rules of traffic", "multipolygon": "areas
 
 
 @dataclass(frozen=True)
-class Bounded:
+class LaneletBounds:
     """Ids of the nodes of both bounds in driving direction, and their points."""
 
     left: tuple[str, ...]
@@ -45,7 +52,7 @@ class Bounded:
 
 
 @dataclass(frozen=True)
-class ReadLanelets:
+class LaneletFile:
     """Lanelets by id; how many relations are no road, by their kind; kinds of parts that were not read."""
 
     lanelets: dict[str, MeasuredLanelet]
@@ -53,7 +60,7 @@ class ReadLanelets:
     unread: tuple[str, ...]
 
 
-def read_map(path: Path, origin: UtmPoint | None = None) -> ReadLanelets:
+def read_map(path: Path, origin: UtmPoint | None = None) -> LaneletFile:
     """The lanelets of a map, with what was left out. Raises ``InputError``.
 
     ``origin``: easting and northing (m) of the point in UTM from which places count, where nodes have no
@@ -62,14 +69,14 @@ def read_map(path: Path, origin: UtmPoint | None = None) -> ReadLanelets:
     root = read_xml(path, "osm")
     points = _points(path, by_id(path, root.findall("node")), origin)
     ways = by_id(path, root.findall("way"))
-    found: dict[str, Bounded] = {}
+    bounds: dict[str, LaneletBounds] = {}
     relations, others = lanelets_among(root, lambda kind: kind in ROADS)
     for name, node in by_id(path, relations).items():
         left, right = (_nodes(path, name, node, x, ways, points) for x in ("left", "right"))
-        found[name] = directed(left, right, points)
-    if not found:
+        bounds[name] = directed(left, right, points)
+    if not bounds:
         raise InputError(f"{path}: {_without_roads(others, ways)}")
-    return ReadLanelets(_linked(found), tuple(sorted(others.items())), unread_of(root))
+    return LaneletFile(_with_links(bounds), tuple(sorted(others.items())), omitted_parts(root))
 
 
 def lanelets_among(root: Element, is_road: Callable[[str], bool]) -> tuple[list[Element], Counter[str]]:
@@ -101,12 +108,12 @@ def _read_users(relation: Element) -> None:
             tag.read_all()
 
 
-def unread_of(root: Element) -> tuple[str, ...]:
+def omitted_parts(root: Element) -> tuple[str, ...]:
     """A line for each kind of parts that were not read; ways of which no node was read place no lanelet."""
     for way in root.findall("way"):
         if not any(x.is_read for x in way):
             way.read_all()
-    return summary_of(unread(root, LANELET2, OSM_KEYS))
+    return summary_of(parts_not_read(root, LANELET2, OSM_KEYS))
 
 
 def tag_of(node: Element, key: str) -> str:
@@ -119,10 +126,10 @@ def tag_of(node: Element, key: str) -> str:
 
 
 def _without_roads(others: Mapping[str, int], ways: Mapping[str, Element]) -> str:
-    """Why there is no road in a file."""
+    """Return why there is no road in a file."""
     if others:
-        told = ", ".join(f"{count} of {kind}" for kind, count in sorted(others.items()))
-        return f"the file has no lanelet of subtype {' or '.join(sorted(ROADS))}, but {told}"
+        counts = ", ".join(f"{count} of {kind}" for kind, count in sorted(others.items()))
+        return f"the file has no lanelet of subtype {' or '.join(sorted(ROADS))}, but {counts}"
     streets = sum(bool(tag_of(x, "highway")) for x in ways.values())
     what = f"{streets} streets as lines (tag highway)" if streets else "none"
     return f"relations of type lanelet are needed, and the file has {what}; use a map in Lanelet2"
@@ -131,7 +138,7 @@ def _without_roads(others: Mapping[str, int], ways: Mapping[str, Element]) -> st
 def _points(
     path: Path, nodes: Mapping[str, Element], origin: UtmPoint | None
 ) -> dict[str, tuple[float, float]]:
-    """Where the nodes are in the plane (m)."""
+    """Return where the nodes are in the plane (m)."""
     keys = "local_x", "local_y"
     local = {name: [tag_of(node, key) for key in keys] for name, node in nodes.items()}
     if all(x and y for x, y in local.values()):
@@ -172,17 +179,17 @@ def _nodes(
             if way is None:
                 raise InputError(f"{where}: way {member.get('ref')} is not in the file")
             parts.append([x.get("ref", "") for x in way.findall("nd")])
-    made = list(_chained(parts))
-    unknown = next((x for x in made if x not in points), None)
+    nodes = list(_join_ways(parts))
+    unknown = next((x for x in nodes if x not in points), None)
     if unknown is not None:
         raise InputError(f"{where}: node {unknown} is not in the file")
-    if len(made) < 2:
-        raise InputError(f"{where} has {len(made)} points; at least two are needed")
-    return tuple(made)
+    if len(nodes) < 2:
+        raise InputError(f"{where} has {len(nodes)} points; at least two are needed")
+    return tuple(nodes)
 
 
-def _chained(parts: Sequence[list[str]]) -> Iterator[str]:
-    """Ways one after the other, turned so that each begins where the one before ends."""
+def _join_ways(parts: Sequence[list[str]]) -> Iterator[str]:
+    """Yield the points of ways in sequence, turned so that each begins where the one before ends."""
     last: str | None = None
     for k, part in enumerate(parts):
         following = parts[k + 1] if k + 1 < len(parts) else []
@@ -197,8 +204,8 @@ def directed(
     left: tuple[str, ...],
     right: tuple[str, ...],
     points: Mapping[str, tuple[float, float]] | Mapping[str, Floats],
-) -> Bounded:
-    """Both bounds in the direction in which the left one is on the left."""
+) -> LaneletBounds:
+    """Return both bounds in the direction in which the left one is on the left."""
     one, other = (np.array([points[x] for x in side]) for side in (left, right))
     along = np.hypot(*(one[0] - other[0])) + np.hypot(*(one[-1] - other[-1]))
     if along > np.hypot(*(one[0] - other[-1])) + np.hypot(*(one[-1] - other[0])):
@@ -208,17 +215,17 @@ def directed(
     area = float(np.sum(around[:-1, 0] * around[1:, 1] - around[1:, 0] * around[:-1, 1]))
     if area < 0:
         one, other, left, right = one[::-1], other[::-1], left[::-1], right[::-1]
-    return Bounded(left, right, (one, other))
+    return LaneletBounds(left, right, (one, other))
 
 
-def _linked(found: Mapping[str, Bounded]) -> dict[str, MeasuredLanelet]:
+def _with_links(bounds: Mapping[str, LaneletBounds]) -> dict[str, MeasuredLanelet]:
     begins, rights, lefts = (defaultdict[tuple[str, ...], list[str]](list) for _ in range(3))
-    for name, x in found.items():
+    for name, x in bounds.items():
         begins[x.left[0], x.right[0]].append(name)
         lefts[x.left].append(name)
         rights[x.right].append(name)
-    made = {}
-    for name, x in found.items():
+    lanelets = {}
+    for name, x in bounds.items():
         left, right = x.lines
         if len(left) != len(right):
             longest = max(float(np.hypot(*np.diff(line, axis=0).T).sum()) for line in x.lines)
@@ -226,5 +233,5 @@ def _linked(found: Mapping[str, Bounded]) -> dict[str, MeasuredLanelet]:
             left, right = resampled(left, count), resampled(right, count)
         after = tuple(y for y in begins[x.left[-1], x.right[-1]] if y != name)
         beside = dict.fromkeys(y for y in (*rights[x.left], *lefts[x.right]) if y != name)
-        made[name] = MeasuredLanelet(name, left, right, None, after, tuple(beside))
-    return made
+        lanelets[name] = MeasuredLanelet(name, left, right, None, after, tuple(beside))
+    return lanelets

@@ -18,7 +18,7 @@ from roadproof.extensions.maps.lanelet_steps import MapLanelet, edges_along, lan
 from roadproof.extensions.maps.lines import crossing, joined, reference_line, thinned
 from roadproof.extensions.maps.network import Network, network_of, zones_of
 from roadproof.extensions.maps.projections import UtmPoint
-from roadproof.extensions.maps.selection import STEP, Selection, Stretch, cut
+from roadproof.extensions.maps.selection import STEP, SelectedStretch, Selection, cut
 from roadproof.extensions.maps.topology import Floats, chains_of, closure, length_of
 from roadproof.world.lanelet_rules import check_lanelets
 from roadproof.world.reference_line import ReferenceLine
@@ -48,7 +48,7 @@ class LaneletMap:
 
     @cached_property
     def across(self) -> dict[str, tuple[str, ...]]:
-        """For each lanelet those that are across the road from it, itself included."""
+        """The lanelets beside each lanelet across the road, itself included."""
         lanelets = self.network.lanelets
         return closure(lanelets, ((x.id, other) for x in lanelets.values() for other in x.beside))
 
@@ -60,21 +60,21 @@ class LaneletMap:
     @cached_property
     def boxes(self) -> tuple[Floats, Floats]:
         """The least and the greatest x and y of the middle of each lanelet, in their order."""
-        found = [(x.min(axis=0), x.max(axis=0)) for x in self.middles.values()]
-        return np.array([x for x, _ in found]), np.array([x for _, x in found])
+        corners = [(x.min(axis=0), x.max(axis=0)) for x in self.middles.values()]
+        return np.array([x for x, _ in corners]), np.array([x for _, x in corners])
 
     @cached_property
     def predecessors(self) -> dict[str, set[str]]:
-        """For each lanelet those that lead into it."""
-        found: dict[str, set[str]] = {x: set() for x in self.network.lanelets}
+        """The predecessors of each lanelet."""
+        predecessors: dict[str, set[str]] = {x: set() for x in self.network.lanelets}
         for x in self.network.lanelets.values():
             for other in x.successors:
-                found[other].add(x.id)
-        return found
+                predecessors[other].add(x.id)
+        return predecessors
 
     @cached_property
     def chain_of(self) -> dict[str, int]:
-        """For each lanelet the number of its way in ``chains``."""
+        """The index in ``chains`` of each lanelet's chain."""
         return {name: k for k, chain in enumerate(self.chains) for name in chain}
 
     def branches(self, name: str) -> set[str]:
@@ -103,10 +103,10 @@ class LaneletMap:
 def read_lanelets(path: Path, origin: UtmPoint | None = None) -> LaneletMap:
     """The map of a file, by its ending; ``origin`` as for ``lanelet2.read_map``. Raises ``InputError``."""
     if path.suffix == ".osm":
-        found = lanelet2.read_map(path, origin)
-        return LaneletMap(path, network_of(path, found.lanelets), found.others, found.unread)
-    lanelets, unread = commonroad.read_map(path)
-    return LaneletMap(path, network_of(path, lanelets), unread=unread)
+        content = lanelet2.read_map(path, origin)
+        return LaneletMap(path, network_of(path, content.lanelets), content.others, content.unread)
+    lanelets, ignored_parts = commonroad.read_map(path)
+    return LaneletMap(path, network_of(path, lanelets), unread=ignored_parts)
 
 
 def way_of(known: LaneletMap, selection: Selection) -> tuple[str, ...]:
@@ -120,15 +120,15 @@ def way_of(known: LaneletMap, selection: Selection) -> tuple[str, ...]:
                 return way
         raise InputError(f"{path}: there is no lanelet {selection.way}; roadproof road {path} lists the ways")
     if not selection.roads and len(main) > 1:
-        told = f"{len(main)} roads; name one as {path}#road=K, K from 1 to {len(main)}, or {path}#way=ID"
-        raise InputError(f"{path}: {told}; roadproof road {path} lists them")
+        problem = f"{len(main)} roads; name one as {path}#road=K, K from 1 to {len(main)}, or {path}#way=ID"
+        raise InputError(f"{path}: {problem}; roadproof road {path} lists them")
     number = selection.roads[0] if selection.roads else "1"
     if not number.isdecimal() or not 0 < int(number) <= len(main):
         raise InputError(f"{path}: road={number}: a number from 1 to {len(main)} is needed, or way=ID")
     return main[int(number) - 1]
 
 
-def stretch_of(known: LaneletMap, selection: Selection) -> Stretch:
+def stretch_of(known: LaneletMap, selection: Selection) -> SelectedStretch:
     """The stretch that is selected. Raises ``InputError``, ``UsageError``."""
     way = way_of(known, selection)
     where = f"{known.path}, way of lanelet {way[0]}"
@@ -139,24 +139,24 @@ def stretch_of(known: LaneletMap, selection: Selection) -> Stretch:
             "along one road; cut the file"
         )
     line = reference_line(joined([lanelets[x].centre for x in way]))
-    measured = _measured(known, way, line, where)
-    made = lanelets_of(measured, way, selection.step or STEP, where)
-    found = cut(known.path, made, selection.span)
-    for step in _COARSER if selection.step is None and len(found) > _MANY else ():
+    measured = _map_lanelets(known, way, line, where)
+    whole_road = lanelets_of(measured, way, selection.step or STEP, where)
+    lanelets_in_span = cut(known.path, whole_road, selection.span)
+    for step in _COARSER if selection.step is None and len(lanelets_in_span) > _MANY else ():
         coarser = lanelets_of(measured, way, step, where)
         fewer = cut(known.path, coarser, selection.span)
         if not _keeps_rules(fewer, where):
             break
-        made, found = coarser, fewer
-        if len(found) <= _MANY:
+        whole_road, lanelets_in_span = coarser, fewer
+        if len(lanelets_in_span) <= _MANY:
             break
-    _refuse_crossing(known, way, line, found)
-    check_lanelets(tuple(found), where)
-    return Stretch(tuple(found), line, made.width_error, known.unread)
+    _refuse_crossing(known, way, line, lanelets_in_span)
+    check_lanelets(tuple(lanelets_in_span), where)
+    return SelectedStretch(tuple(lanelets_in_span), line, whole_road.width_error, known.unread)
 
 
 def _keeps_rules(lanelets: list[Lanelet], where: str) -> bool:
-    """Whether lanelets of a lane still meet, though their edges are coarser."""
+    """Return whether lanelets of a lane still meet, though their edges are coarser."""
     try:
         check_lanelets(tuple(lanelets), where)
     except InputError:
@@ -164,7 +164,7 @@ def _keeps_rules(lanelets: list[Lanelet], where: str) -> bool:
     return True
 
 
-def _measured(
+def _map_lanelets(
     known: LaneletMap, way: tuple[str, ...], line: ReferenceLine, where: str
 ) -> tuple[MapLanelet, ...]:
     """The lanelets of the road along a way, each with its lane."""
@@ -197,7 +197,7 @@ def _measured(
 
 
 def _begins(known: LaneletMap, way: tuple[str, ...]) -> dict[str, float]:
-    """Where (m) along a way each lanelet of its road begins to be beside it."""
+    """Return where (m) along a way each lanelet of its road begins to be beside it."""
     begins: dict[str, float] = {}
     begin = 0.0
     for name in way:
@@ -219,11 +219,11 @@ def _kinds(known: LaneletMap, way: tuple[str, ...]) -> tuple[dict[str, Attribute
 
 
 def _refuse_crossing(
-    known: LaneletMap, way: tuple[str, ...], line: ReferenceLine, found: list[Lanelet]
+    known: LaneletMap, way: tuple[str, ...], line: ReferenceLine, selected: list[Lanelet]
 ) -> None:
     """Raises ``InputError`` where a lanelet of the map crosses the part of the road that is selected."""
     lanelets, ours = known.network.lanelets, set(known.beside(way))
-    ends = [float(s) for x in found for s in x.s if s is not None]
+    ends = [float(s) for x in selected for s in x.s if s is not None]
     joining = {other for x in ours for other in known.predecessors[x]}
     parting = {other for x in ours for other in lanelets[x].successors}
     roads = [joined([known.middles[name] for name in way])]
@@ -236,5 +236,5 @@ def _refuse_crossing(
             s = line.locate(*met)[0] if met else None
             if s is not None and min(ends) <= s <= max(ends):
                 rule = "only traffic along one road is supported; cut a part with from=M and to=M"
-                told = f"lanelet {name} crosses it at s = {s:.0f} m: {rule}"
-                raise InputError(f"{known.path}, way of lanelet {way[0]}: {told}")
+                problem = f"lanelet {name} crosses it at s = {s:.0f} m: {rule}"
+                raise InputError(f"{known.path}, way of lanelet {way[0]}: {problem}")

@@ -54,13 +54,13 @@ class MapLanelet:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """s of its beginning and its end, in the middle of those of its bounds."""
+        """Return s of both ends, each midway between the ends of the bounds."""
         first, last = (float(self.right[k, 0] + self.left[k, 0]) / 2 for k in (0, -1))
         return first, last
 
 
 @dataclass(frozen=True)
-class _Strip:
+class _LaneletStrip:
     """A lanelet on a step from ``s[0]`` to ``s[1]``; ``error``: how far an edge is from its bound (m)."""
 
     lanelet: MapLanelet
@@ -86,9 +86,10 @@ def edges_along(line: ReferenceLine, bound: Floats, begin: float, where: str) ->
         s, d = line.locate(x, y, float(ahead[near, 0]))
         last = s
         if rows and s < rows[-1][0] - _BACK:
-            told = f"at s = {s:.1f} m it goes back along the middle of the way by {rows[-1][0] - s:.1f} m"
+            problem = f"at s = {s:.1f} m it goes back along the middle of the way by {rows[-1][0] - s:.1f} m"
             raise InputError(
-                f"{where}: {told}, {_cause(line, bound, s)}; lanes side by side are needed: name another way "
+                f"{where}: {problem}, {_cause(line, bound, s)}; lanes side by side are needed: "
+                "name another way "
                 "or cut the file"
             )
         if not rows or s > rows[-1][0]:
@@ -97,7 +98,7 @@ def edges_along(line: ReferenceLine, bound: Floats, begin: float, where: str) ->
 
 
 def _cause(line: ReferenceLine, bound: Floats, s: float) -> str:
-    """Why a bound goes back along the line at ``s``."""
+    """Return why a bound goes back along the line at ``s``."""
     step = np.diff(bound, axis=0)
     turns = np.abs(np.remainder(np.diff(np.arctan2(step[:, 1], step[:, 0])) + np.pi, 2 * np.pi) - np.pi)
     sharpest = float(np.degrees(turns.max(initial=0.0)))
@@ -116,15 +117,15 @@ def lanelets_of(
     one of them (m). An id of several rectangles is ID.1, ID.2, ….
     """
     places = _places(lanelets, set(way))
-    strips: list[_Strip] = []
+    strips: list[_LaneletStrip] = []
     for begin, end in pairwise(sorted(set(places.values()))):
         there = [x for x in lanelets if places[x.ends[0]] <= begin and end <= places[x.ends[1]]]
         there.sort(key=lambda x: _between(x.right, begin, end) + _between(x.left, begin, end))
-        divided = _divided(there, (begin, end), float(step))
-        strips += _joined([[*_strips(there, part, where)] for part in divided], step)
+        divided = _divide(there, (begin, end), float(step))
+        strips += _merge_steps([[*_strips(there, part, where)] for part in divided], step)
     counts, parts = Counter(x.lanelet.id for x in strips), Counter[str]()
     names, numbers = dict[str, str](), Counter[Attribute]()
-    found = []
+    rectangles = []
     for x in strips:
         if x.lanelet.lane not in names:
             numbers[x.lanelet.attribute] += 1
@@ -132,9 +133,9 @@ def lanelets_of(
         parts[x.lanelet.id] += 1
         name = x.lanelet.id if counts[x.lanelet.id] == 1 else f"{x.lanelet.id}.{parts[x.lanelet.id]}"
         lane = names[x.lanelet.lane]
-        found.append(Lanelet(name, lane, x.lanelet.zone, x.lanelet.attribute, x.s, x.d))
+        rectangles.append(Lanelet(name, lane, x.lanelet.zone, x.lanelet.attribute, x.s, x.d))
     error = max((x.error for x in strips), default=0.0)
-    return Carriageway(tuple(found), Fraction(-int(-error * _MILLI // 1), _MILLI))
+    return Carriageway(tuple(rectangles), Fraction(-int(-error * _MILLI // 1), _MILLI))
 
 
 def _places(lanelets: Sequence[MapLanelet], way: set[str]) -> dict[float, float]:
@@ -156,17 +157,17 @@ def _place(near: list[float], ours: set[float]) -> float:
 
 
 def _between(edge: Floats, begin: float, end: float) -> float:
-    """d of an edge in the middle of a step."""
+    """Return d of an edge in the middle of a step."""
     return float(np.interp((begin + end) / 2, edge[:, 0], edge[:, 1]))
 
 
 def _values(edge: Floats, part: tuple[float, float]) -> Floats:
-    """d of an edge at the ends of a part and at its points between."""
+    """Return d of an edge at the ends of a part and at its points between."""
     inside = edge[(edge[:, 0] > part[0]) & (edge[:, 0] < part[1]), 1]
     return np.concatenate((inside, np.interp(part, edge[:, 0], edge[:, 1])))
 
 
-def _divided(
+def _divide(
     there: Sequence[MapLanelet], part: tuple[float, float], step: float
 ) -> Iterator[tuple[float, float]]:
     """Parts on which no edge changes by more than ``step``."""
@@ -176,23 +177,23 @@ def _divided(
         yield part
         return
     middle = round((low + high) / 2 * _MILLI) / _MILLI
-    yield from _divided(there, (low, middle), step)
-    yield from _divided(there, (middle, high), step)
+    yield from _divide(there, (low, middle), step)
+    yield from _divide(there, (middle, high), step)
 
 
-def _strips(there: Sequence[MapLanelet], part: tuple[float, float], where: str) -> Iterator[_Strip]:
+def _strips(there: Sequence[MapLanelet], part: tuple[float, float], where: str) -> Iterator[_LaneletStrip]:
     """Lanelets side by side on a step, from right to left."""
     s = to_millimetre(part[0]), to_millimetre(part[1])
     beside: list[_Edges] = []
     for x in there:
-        found = _Edges(x, _values(x.right, part), _values(x.left, part))
-        while beside and found.gives_way_or_takes(beside[-1], where, part[0]):
+        own_edges = _Edges(x, _values(x.right, part), _values(x.left, part))
+        while beside and own_edges.gives_way_or_takes(beside[-1], where, part[0]):
             beside.pop()
-        if found.right < found.left:
-            beside.append(found)
+        if own_edges.right < own_edges.left:
+            beside.append(own_edges)
     for edges in beside:
         if edges.right + _NARROWEST <= edges.left:
-            yield _Strip(edges.lanelet, s, (edges.right, edges.left), edges.error)
+            yield _LaneletStrip(edges.lanelet, s, (edges.right, edges.left), edges.error)
 
 
 class _Edges:
@@ -208,7 +209,7 @@ class _Edges:
 
     @property
     def error(self) -> float:
-        """How far (m) an edge is from its bound."""
+        """Return how far (m) an edge is from its bound."""
         right = 0.0 if self.moved_right else float(np.abs(self.rights - float(self.right)).max())
         left = 0.0 if self.moved_left else float(np.abs(self.lefts - float(self.left)).max())
         return max(right, left)
@@ -235,7 +236,7 @@ class _Edges:
         return False
 
 
-def _joined(parts: list[list[_Strip]], step: Fraction) -> list[_Strip]:
+def _merge_steps(parts: list[list[_LaneletStrip]], step: Fraction) -> list[_LaneletStrip]:
     """The strips of a step with those of a lanelet as one along which neither of its edges changes much.
 
     Every edge is constant for as long as it changes by no more than ``step``, so that lanelets side by side
@@ -245,38 +246,39 @@ def _joined(parts: list[list[_Strip]], step: Fraction) -> list[_Strip]:
     if any([x.lanelet for x in part] != [x.lanelet for x in parts[0]] for part in parts):
         return plain
     rights, lefts = (
-        [_evened([part[k].d[side] for part in parts], step) for k in range(len(parts[0]))] for side in (0, 1)
+        [_level_runs([part[k].d[side] for part in parts], step) for k in range(len(parts[0]))]
+        for side in (0, 1)
     )
     for n, part in enumerate(parts):
         for k in range(1, len(part)):
             apart, now = part[k].d[0] - part[k - 1].d[1], rights[k][n] - lefts[k - 1][n]
             if now < 0 or (now == 0) != (apart == 0):
                 return plain
-    found: list[_Strip] = []
+    strips: list[_LaneletStrip] = []
     for k, first in enumerate(parts[0]):
         edges = [*zip(rights[k], lefts[k], strict=True)]
         for n, d in enumerate(edges):
             x = parts[n][k]
             moved = max(abs(float(a - b)) for a, b in zip(x.d, d, strict=True))
             if n and edges[n - 1] == d:
-                before = found.pop()
-                x = _Strip(first.lanelet, (before.s[0], x.s[1]), d, max(before.error, x.error + moved))
+                before = strips.pop()
+                x = _LaneletStrip(first.lanelet, (before.s[0], x.s[1]), d, max(before.error, x.error + moved))
             else:
-                x = _Strip(first.lanelet, x.s, d, x.error + moved)
-            found.append(x)
-    return found
+                x = _LaneletStrip(first.lanelet, x.s, d, x.error + moved)
+            strips.append(x)
+    return strips
 
 
-def _evened(values: list[Fraction], step: Fraction) -> list[Fraction]:
+def _level_runs(values: list[Fraction], step: Fraction) -> list[Fraction]:
     """Values with the middle of each run of them in which they differ by no more than ``step``."""
-    found: list[Fraction] = []
+    evened: list[Fraction] = []
     run: list[Fraction] = []
     for value in values:
         if run and max(*run, value) - min(*run, value) > step:
-            found += [to_millimetre(float(min(run) + max(run)) / 2)] * len(run)
+            evened += [to_millimetre(float(min(run) + max(run)) / 2)] * len(run)
             run = []
         run.append(value)
-    return found + [to_millimetre(float(min(run) + max(run)) / 2)] * len(run) if run else found
+    return evened + [to_millimetre(float(min(run) + max(run)) / 2)] * len(run) if run else evened
 
 
 def _middle(values: Floats) -> Fraction:

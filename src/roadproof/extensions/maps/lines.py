@@ -34,11 +34,11 @@ def resampled(line: Floats, count: int) -> Floats:
 
 def thinned(line: Floats, least: float) -> Floats:
     """The points of a line, its ends included, without those that are nearer than ``least`` m to the last."""
-    kept = [0]
+    indices = [0]
     for k in range(1, len(line) - 1):
-        if float(np.hypot(*(line[k] - line[kept[-1]]))) >= least:
-            kept.append(k)
-    return line[[*kept, len(line) - 1]]
+        if float(np.hypot(*(line[k] - line[indices[-1]]))) >= least:
+            indices.append(k)
+    return line[[*indices, len(line) - 1]]
 
 
 def joined(lines: list[Floats]) -> Floats:
@@ -53,7 +53,7 @@ def reference_line(line: Floats) -> ReferenceLine:
 
     Edges of lanelets are measured from it, so no lane has that error. Noise of points would be bends.
     """
-    points = [(to_millimetre(x), to_millimetre(y)) for x, y in _smoothed(even_line(line)).tolist()]
+    points = [(to_millimetre(x), to_millimetre(y)) for x, y in _smooth(even_line(line)).tolist()]
     (x0, y0), *_ = points
     curve = Polyline(tuple((x - x0, y - y0) for x, y in points))
     return ReferenceLine((Part(Fraction(0), to_millimetre(length_of(curve)), x0, y0, Fraction(0), curve),))
@@ -67,8 +67,8 @@ def crossing(one: Floats, other: Floats, ends: float) -> tuple[float, float] | N
     p, r = one[:-1, None, :], np.diff(one, axis=0)[:, None, :]
     q, t = other[None, :-1, :], np.diff(other, axis=0)[None, :, :]
     with np.errstate(divide="ignore", invalid="ignore"):
-        across = _turn(r, t)
-        along, beside = _turn(q - p, t) / across, _turn(q - p, r) / across
+        across = _cross_product(r, t)
+        along, beside = _cross_product(q - p, t) / across, _cross_product(q - p, r) / across
         met = np.argwhere((along >= 0) & (along < 1) & (beside >= 0) & (beside < 1))
     for i, k in met.tolist():
         point = one[i] + along[i, k] * (one[i + 1] - one[i])
@@ -78,7 +78,7 @@ def crossing(one: Floats, other: Floats, ends: float) -> tuple[float, float] | N
     return None
 
 
-def _smoothed(line: Floats) -> Floats:
+def _smooth(line: Floats) -> Floats:
     """Means of points around each, weighted by a normal distribution: the widest that stays near the line."""
     for wide in _SMOOTHING:
         reach = min(math.ceil(3 * wide), len(line) - 1)
@@ -93,13 +93,13 @@ def _smoothed(line: Floats) -> Floats:
     return line
 
 
-def _turn(one: Floats, other: Floats) -> Floats:
-    made: Floats = one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
-    return made
+def _cross_product(one: Floats, other: Floats) -> Floats:
+    product: Floats = one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
+    return product
 
 
 def way_along(line: Floats) -> Floats:
-    """How far along the line its points are (m)."""
+    """Return how far along the line its points are (m)."""
     return np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
 
 

@@ -29,7 +29,7 @@ LONGEST = 100_000.0
 
 @dataclass(frozen=True)
 class LaneletAttributes:
-    """What a user says of lanelets: attributes and zones by id."""
+    """Attributes and zones of lanelets by id, as a user states them."""
 
     attributes: Mapping[str, Attribute] = field(default_factory=dict)
     zones: Mapping[str, Zone] = field(default_factory=dict)
@@ -62,25 +62,31 @@ class Network:
 
 def network_of(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> Network:
     """The network of the lanelets of ``path``, with zones from the file beside it. Raises ``InputError``."""
-    told = _read_said(path.with_name(f"{path.stem}{ZONES_ENDING}"), lanelets)
+    overrides = _read_zones_file(path.with_name(f"{path.stem}{ZONES_ENDING}"), lanelets)
     for lanelet in lanelets.values():
         if not lanelet.length < LONGEST:
             length = f"lanelet {lanelet.id} is {lanelet.length:g} m long"
             raise InputError(f"{path}: {length}; at most {LONGEST:g} m")
     inferred = attributes_of(lanelets)
-    attributes = {name: told.attributes.get(name, attribute) for name, (attribute, _) in inferred.items()}
+    attributes = {
+        name: overrides.attributes.get(name, attribute) for name, (attribute, _) in inferred.items()
+    }
     ways = carriageways_of(lanelets)
     lanes = _lanes(lanelets, attributes, ways)
-    zones = {**zones_of(lanelets, attributes), **told.zones}
+    zones = {**zones_of(lanelets, attributes), **overrides.zones}
     chains = chains_of(lanelets)
     main = tuple(main_way(lanelets, [chain for chain in chains if chain[0] in way]) for way in ways)
-    reasons = {name: reason for name, (_, reason) in inferred.items() if name not in told.attributes}
-    notes = (*_say_bounds(lanelets), *_say_inferred(lanes, attributes, reasons), *_say_said(told))
+    reasons = {name: reason for name, (_, reason) in inferred.items() if name not in overrides.attributes}
+    notes = (
+        *_common_bound_notes(lanelets),
+        *_inference_notes(lanes, attributes, reasons),
+        *_override_notes(overrides),
+    )
     return Network(lanelets, attributes, zones, lanes, _beside(lanelets, lanes), main, notes)
 
 
-def _read_said(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> LaneletAttributes:
-    """What a file NAME_zones.toml says; nothing where there is none.
+def _read_zones_file(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> LaneletAttributes:
+    """Return the content of a file NAME_zones.toml, empty where there is no file.
 
     It has ``[[lanelet]]`` with ``id`` and ``zone``, ``attribute`` or both. Raises ``InputError``.
     """
@@ -96,8 +102,8 @@ def _read_said(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> LaneletAt
         where = f"{path}, lanelet {k}"
         if not isinstance(entry, dict) or not {"id"} < set(entry) <= {"id", "zone", "attribute"}:
             raise InputError(f"{where}: an entry has id and zone, attribute or both")
-        said, zone, attribute = map(entry.get, ("id", "zone", "attribute"))
-        name = str(said)
+        number, zone, attribute = map(entry.get, ("id", "zone", "attribute"))
+        name = str(number)
         if name not in lanelets:
             raise InputError(f"{where}: id={name}: there is no such lanelet")
         if name in attributes or name in zones:
@@ -111,7 +117,7 @@ def _read_said(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> LaneletAt
     return LaneletAttributes(attributes, zones)
 
 
-def _say_bounds(lanelets: Mapping[str, MeasuredLanelet]) -> Iterator[str]:
+def _common_bound_notes(lanelets: Mapping[str, MeasuredLanelet]) -> Iterator[str]:
     """A note on neighbours that are known by a common bound alone."""
     pairs = dict.fromkeys(frozenset((x.id, other)) for x in lanelets.values() for other in x.by_bound)
     if pairs:
@@ -120,7 +126,7 @@ def _say_bounds(lanelets: Mapping[str, MeasuredLanelet]) -> Iterator[str]:
         yield f"lanelets {named}{more} lie side by side by a common bound; the file does not say so"
 
 
-def _say_inferred(
+def _inference_notes(
     lanes: Iterable[MeasuredLane], attributes: Mapping[str, Attribute], reasons: Mapping[str, str]
 ) -> Iterator[str]:
     for lane in lanes:
@@ -132,10 +138,10 @@ def _say_inferred(
             yield f"{kind} lane {lane.name} ({noun} {named}) inferred, since it {' and '.join(sorted(why))}"
 
 
-def _say_said(said: LaneletAttributes) -> Iterator[str]:
-    for name in dict.fromkeys((*said.attributes, *said.zones)):
-        parts = [f"attribute {said.attributes[name]}"] if name in said.attributes else []
-        parts += [f"zone {said.zones[name]}"] if name in said.zones else []
+def _override_notes(overrides: LaneletAttributes) -> Iterator[str]:
+    for name in dict.fromkeys((*overrides.attributes, *overrides.zones)):
+        parts = [f"attribute {overrides.attributes[name]}"] if name in overrides.attributes else []
+        parts += [f"zone {overrides.zones[name]}"] if name in overrides.zones else []
         yield f"lanelet {name}: {' and '.join(parts)}, as said in its {ZONES_ENDING.lstrip('_')}"
 
 
@@ -186,15 +192,17 @@ def zones_beside(attributes: Mapping[str, Attribute], beside: Iterable[tuple[str
 
 
 def _in_order(lanelets: Mapping[str, MeasuredLanelet], members: tuple[str, ...]) -> tuple[str, ...]:
-    """From the one without a predecessor on; in the order found where a lane is a ring or branches."""
+    """Return lanelets from the one without a predecessor on; in file order where a lane is a ring or
+    branches.
+    """
     followers = {other for name in members for other in lanelets[name].successors}
     current = next((name for name in members if name not in followers), members[0])
     ordered = [current]
     while True:
         following = (x for x in lanelets[current].successors if x in members and x not in ordered)
-        found = next(following, None)
-        if found is None:
+        next_lanelet = next(following, None)
+        if next_lanelet is None:
             break
-        ordered.append(found)
-        current = found
+        ordered.append(next_lanelet)
+        current = next_lanelet
     return (*ordered, *(name for name in members if name not in ordered))

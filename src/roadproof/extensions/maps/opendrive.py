@@ -14,7 +14,7 @@ from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.extensions.maps.harmless import OPENDRIVE, OPENDRIVE_FILE
-from roadproof.runtime.xml_reader import Element, read_xml, summary_of, unread
+from roadproof.extensions.maps.xml_reader import Element, parts_not_read, read_xml, summary_of
 from roadproof.world.curves import Coefficients, Cubic, Curve, Line, Spiral
 from roadproof.world.reference_line import Part, ReferenceLine
 from roadproof.world.road import Zone
@@ -34,7 +34,7 @@ _LENGTH_TOLERANCE = Fraction(1, 2)
 
 
 @dataclass(frozen=True)
-class Piece:
+class CubicPiece:
     """A cubic a + b·x + c·x² + d·x³ of x = s - ``s``, up to where the next one begins."""
 
     s: Fraction
@@ -46,11 +46,11 @@ class Piece:
         return a + x * (b + x * (c + x * d))
 
 
-Polynomials: TypeAlias = tuple[Piece, ...]
+Polynomials: TypeAlias = tuple[CubicPiece, ...]
 
 
 def value_at(pieces: Polynomials, s: Fraction) -> Fraction:
-    """That of the last piece that has begun; 0 where there is none."""
+    """Return the value at ``s`` of the last piece that has begun; 0 where none has."""
     return next((x.at(s) for x in reversed(pieces) if x.s <= s), pieces[0].at(s) if pieces else _ZERO)
 
 
@@ -81,19 +81,20 @@ class MapSection:
 
 
 def outer_edge(offset: Polynomials, section: MapSection, lane: int, s: Fraction) -> Fraction:
-    """How far (m) the outer edge of a lane is to the left of the reference line; of lane 0, its only edge.
+    """Return how far (m) the outer edge of a lane is to the left of the reference line; of lane 0, its only
+    edge.
 
     Raises ``KeyError`` for a lane that the section does not have.
     """
     edge, sign = value_at(offset, s), 1 if lane > 0 else -1
     for number in range(1, abs(lane) + 1):
-        found = section.lanes[sign * number]
-        edge = value_at(found.border, s) if found.border else edge + sign * value_at(found.width, s)
+        map_lane = section.lanes[sign * number]
+        edge = value_at(map_lane.border, s) if map_lane.border else edge + sign * value_at(map_lane.width, s)
     return edge
 
 
 @dataclass(frozen=True)
-class Link:
+class RoadLink:
     """The road or junction that a road leads to, and which end of a road."""
 
     kind: str
@@ -116,8 +117,8 @@ class MapRoad:
     line: ReferenceLine
     offset: Polynomials
     sections: tuple[MapSection, ...]
-    predecessor: Link | None
-    successor: Link | None
+    predecessor: RoadLink | None
+    successor: RoadLink | None
     unread: tuple[str, ...] = ()
 
     @property
@@ -147,15 +148,15 @@ def read_map(path: Path) -> RoadMap:
         raise InputError(f"{path}: {len(nodes)} roads; at most {_MOST} are read")
     if len({x.get("id") for x in nodes}) < len(nodes):
         raise InputError(f"{path}: two roads have the same id")
-    found, refused = list[MapRoad](), dict[str, str]()
+    roads, refused = list[MapRoad](), dict[str, str]()
     for node in nodes:
         try:
-            found.append(_road(node, f"{path}: road {node.get('id')}"))
+            roads.append(_road(node, f"{path}: road {node.get('id')}"))
         except InputError as error:
             refused[node.get("id", "")] = str(error)
-    if not found:
+    if not roads:
         raise InputError(next(iter(refused.values())))
-    return RoadMap(tuple(found), refused, summary_of(unread(root, OPENDRIVE_FILE)))
+    return RoadMap(tuple(roads), refused, summary_of(parts_not_read(root, OPENDRIVE_FILE)))
 
 
 def _road(node: Element, where: str) -> MapRoad:
@@ -167,7 +168,7 @@ def _road(node: Element, where: str) -> MapRoad:
         raise InputError(f"{where}: rule={node.get('rule')}: one of {', '.join(_RULES)} is needed")
     junction, line = node.get("junction", "-1"), _line(node, length, where)
     before, after = _links(node)
-    made = MapRoad(
+    road = MapRoad(
         node.get("id", ""),
         node.get("name") or "",
         where,
@@ -179,7 +180,7 @@ def _road(node: Element, where: str) -> MapRoad:
         _link(before),
         _link(after),
     )
-    return replace(made, unread=summary_of(unread(node, OPENDRIVE)))
+    return replace(road, unread=summary_of(parts_not_read(node, OPENDRIVE)))
 
 
 def _links(node: Element) -> tuple[Element | None, Element | None]:
@@ -188,10 +189,10 @@ def _links(node: Element) -> tuple[Element | None, Element | None]:
     return (None, None) if links is None else (links.find("predecessor"), links.find("successor"))
 
 
-def _link(node: Element | None) -> Link | None:
+def _link(node: Element | None) -> RoadLink | None:
     if node is None:
         return None
-    return Link(node.get("elementType", ""), node.get("elementId", ""), node.get("contactPoint"))
+    return RoadLink(node.get("elementType", ""), node.get("elementId", ""), node.get("contactPoint"))
 
 
 def _line(road: Element, length: Fraction, where: str) -> ReferenceLine:
@@ -209,8 +210,8 @@ def _line(road: Element, length: Fraction, where: str) -> ReferenceLine:
         if long > 0:
             parts.append(Part(s, long, x, y, heading, _curve(node, long, at)))
     if not parts or abs(end - length) > _LENGTH_TOLERANCE:
-        told = road.get("length")
-        raise InputError(f"{where}: length={told}, but its geometries end at {float(end):g}")
+        stated_length = road.get("length")
+        raise InputError(f"{where}: length={stated_length}, but its geometries end at {float(end):g}")
     _check_joined(parts, where)
     return ReferenceLine(tuple(parts))
 
@@ -228,15 +229,17 @@ def _check_joined(parts: list[Part], where: str) -> None:
             raise InputError(f"{where}, geometry {k - 1}: {error}") from None
         apart = ((end.x - begin.x) ** 2 + (end.y - begin.y) ** 2) ** 0.5
         if not apart <= _NEAR:
-            told = f"it begins {apart:.2f} m from where the one before it ends; at most {_NEAR} m are allowed"
-            raise InputError(f"{where}, geometry {k}: {told}")
+            problem = (
+                f"it begins {apart:.2f} m from where the one before it ends; at most {_NEAR} m are allowed"
+            )
+            raise InputError(f"{where}, geometry {k}: {problem}")
 
 
 def _curve(node: Element, length: Fraction, where: str) -> Curve:
     shapes = [x for x in node if x.tag not in ("userData", "include", "dataQuality")]
     if len(shapes) != 1:
-        told = " and ".join(x.tag for x in shapes) or "nothing"
-        raise InputError(f"{where}: {told}: one of {', '.join(_CURVES)} is needed")
+        tags = " and ".join(x.tag for x in shapes) or "nothing"
+        raise InputError(f"{where}: {tags}: one of {', '.join(_CURVES)} is needed")
     (shape,) = shapes
     shape.note()
     if shape.tag not in _CURVES:
@@ -282,10 +285,10 @@ def _coefficients(node: Element, names: str | list[str], where: str) -> Coeffici
 
 def _pieces(nodes: list[Element], name: str, begin: Fraction, where: str) -> Polynomials:
     """Cubics by the s at which they begin, ``name`` m after ``begin``; of several at one s, the last one."""
-    found = [Piece(begin + _number(x, name, where), _coefficients(x, "abcd", where)) for x in nodes]
-    if any(a.s > b.s for a, b in pairwise(found)):
+    pieces = [CubicPiece(begin + _number(x, name, where), _coefficients(x, "abcd", where)) for x in nodes]
+    if any(a.s > b.s for a, b in pairwise(pieces)):
         raise InputError(f"{where}: {name} must ascend")
-    return tuple({x.s: x for x in found}.values())
+    return tuple({x.s: x for x in pieces}.values())
 
 
 def _sections(road: Element, length: Fraction, where: str) -> Iterator[MapSection]:
@@ -348,12 +351,14 @@ def _read_plain(node: Element) -> None:
 
 
 def _zone(lane: Element, where: str) -> Zone | None:
-    """What a lane itself says of its zone."""
-    said = [x.peek("value") or "" for x in lane if x.tag == "userData" and x.peek("code") == ZONE]
-    found = next((zone for zone in ZONES if said == [zone]), None)
-    if said and found is None:
-        raise InputError(f"{where}: userData {ZONE}={', '.join(said)!r}: one of {', '.join(ZONES)} is needed")
-    return found
+    """Return the zone that a lane itself states."""
+    values = [x.peek("value") or "" for x in lane if x.tag == "userData" and x.peek("code") == ZONE]
+    stated_zone = next((zone for zone in ZONES if values == [zone]), None)
+    if values and stated_zone is None:
+        raise InputError(
+            f"{where}: userData {ZONE}={', '.join(values)!r}: one of {', '.join(ZONES)} is needed"
+        )
+    return stated_zone
 
 
 def _number(node: Element, name: str, where: str) -> Fraction:

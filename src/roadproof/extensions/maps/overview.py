@@ -1,4 +1,4 @@
-"""What a map has to offer: for each road and direction, the lanes, zones and bends that can be selected."""
+"""The overview of a map: the lanes, zones and bends of each road and direction that can be selected."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -8,7 +8,7 @@ from pathlib import Path
 from roadproof.errors import InputError
 from roadproof.extensions.maps.carriageway import DRIVEN, RAMPS
 from roadproof.extensions.maps.opendrive import MapRoad, RoadMap
-from roadproof.extensions.maps.selection import LANELETS, Selection, Stretch, stretch_of
+from roadproof.extensions.maps.selection import LANELETS, SelectedStretch, Selection, stretch_of
 from roadproof.world.length_error import LengthError, length_error
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Lanelet, Zone
@@ -18,7 +18,7 @@ _NO_ERROR = LengthError(Fraction(0), Fraction(0))
 
 @dataclass(frozen=True)
 class ZoneSpan:
-    """From where to where (m) there are lanelets of a zone."""
+    """A span (m) of the road where lanelets are in a zone."""
 
     zone: Zone
     begin: Fraction
@@ -50,14 +50,14 @@ class MapStretch:
 
     @property
     def untyped_ramps(self) -> bool:
-        """Whether lanes that begin or end are main road as none has a type for ramps, in OpenDRIVE."""
+        """Return whether lanes that begin or end are main road as none has a type for ramps, in OpenDRIVE."""
         typed = any(x.attribute != "main" for x in self.lanelets)
         return Path(self.select.partition("#")[0]).suffix not in LANELETS and not typed
 
 
 def stretches_of(path: Path, roads: RoadMap) -> tuple[MapStretch, ...]:
     """Every road of a map in every direction that lanes are driven in, then those that cannot be read."""
-    found = []
+    stretches = []
     for road in roads.roads:
         for side in ("right", "left"):
             numbers = {x for section in road.sections for x in section.lanes}
@@ -65,14 +65,14 @@ def stretches_of(path: Path, roads: RoadMap) -> tuple[MapStretch, ...]:
                 continue
             stretch = _stretch(path, roads, road, side)
             if stretch is not None:
-                found.append(stretch)
-    for name, told in roads.refused.items():
-        found.append(MapStretch(f"{path}#road={name}", "", Fraction(0), refused=told))
-    return tuple(found)
+                stretches.append(stretch)
+    for name, reason in roads.refused.items():
+        stretches.append(MapStretch(f"{path}#road={name}", "", Fraction(0), refused=reason))
+    return tuple(stretches)
 
 
-def describe(select: str, name: str, direction: str, stretch: Stretch) -> MapStretch:
-    """What there is to know of a selected stretch."""
+def describe(select: str, name: str, direction: str, stretch: SelectedStretch) -> MapStretch:
+    """Return a description of a selected stretch."""
     lanelets, line = stretch.lanelets, stretch.line
     places = sorted({x for lanelet in lanelets for x in lanelet.s if x is not None})
     counts = [sum(_covers(x, a, b) for x in lanelets) for a, b in pairwise(places)]
@@ -107,22 +107,22 @@ def _stretch(path: Path, roads: RoadMap, road: MapRoad, side: str) -> MapStretch
         return None
     forward = (side == "right") == (road.rule == "RHT")
     try:
-        found = stretch_of(path, roads, Selection((road.id,), side == "left", (None, None)))
+        selected = stretch_of(path, roads, Selection((road.id,), side == "left", (None, None)))
     except InputError as error:
         return MapStretch(select, road.name, road.length, refused=str(error))
     direction = "along s" if forward else "against s"
-    return describe(select, road.name, direction, found)
+    return describe(select, road.name, direction, selected)
 
 
 def _zones(lanelets: tuple[Lanelet, ...]) -> tuple[ZoneSpan, ...]:
     """Merge and depart zones, with those that touch as one."""
-    found: list[ZoneSpan] = []
+    zones: list[ZoneSpan] = []
     spans = sorted({(x.s[0], x.s[1], x.zone) for x in lanelets if x.zone != "main"}, key=str)
     for begin, end, zone in sorted(spans, key=lambda x: x[0] or Fraction(0)):
         if begin is None or end is None:
             continue
-        if found and found[-1].zone == zone and begin <= found[-1].end:
-            found[-1] = ZoneSpan(zone, found[-1].begin, max(end, found[-1].end))
+        if zones and zones[-1].zone == zone and begin <= zones[-1].end:
+            zones[-1] = ZoneSpan(zone, zones[-1].begin, max(end, zones[-1].end))
         else:
-            found.append(ZoneSpan(zone, begin, end))
-    return tuple(found)
+            zones.append(ZoneSpan(zone, begin, end))
+    return tuple(zones)

@@ -51,7 +51,7 @@ def _places(low: float, high: float) -> list[float]:
 
 
 def _number(axes: Any, line: ReferenceLine, low: float, high: float, beside: float) -> None:
-    """s at some places, written beside the road."""
+    """Write s at some places beside the road."""
     step = _round_step((high - low) / _TICKS)
     for k in range(math.ceil(low / step), math.floor(high / step) + 1):
         x, y = line.place(k * step, beside + (high - low) * 0.015)

@@ -4,13 +4,13 @@ import math
 from collections.abc import Iterable
 from fractions import Fraction
 
-from roadproof.extensions.maps.opendrive import Piece
+from roadproof.extensions.maps.opendrive import CubicPiece
 from roadproof.world.curves import Coefficients
 
 _ZERO = Fraction(0)
 
 
-def total(pieces: Iterable[tuple[int, Piece]], begin: Fraction) -> Coefficients:
+def sum_of_cubics(pieces: Iterable[tuple[int, CubicPiece]], begin: Fraction) -> Coefficients:
     """Signed cubics added up, by the distance from ``begin``."""
     sums = [_ZERO] * 4
     for sign, piece in pieces:
@@ -24,13 +24,17 @@ def total(pieces: Iterable[tuple[int, Piece]], begin: Fraction) -> Coefficients:
 def extremes(cubic: Coefficients, length: Fraction) -> tuple[Fraction, Fraction]:
     """The least and the greatest value from 0 to ``length``."""
     a, b, c, d = cubic
-    places = [_ZERO, length, *(x for x in map(Fraction, _still(*map(float, (b, c, d)))) if 0 < x < length)]
+    places = [
+        _ZERO,
+        length,
+        *(x for x in map(Fraction, _stationary_points(*map(float, (b, c, d)))) if 0 < x < length),
+    ]
     values = [a + x * (b + x * (c + x * d)) for x in places]
     return min(values), max(values)
 
 
-def _still(b: float, c: float, d: float) -> list[float]:
-    """Where b + 2·c·x + 3·d·x² is 0."""
+def _stationary_points(b: float, c: float, d: float) -> list[float]:
+    """Return where b + 2·c·x + 3·d·x² is 0."""
     if d == 0:
         return [] if c == 0 else [-b / (2 * c)]
     square = c * c - 3 * b * d

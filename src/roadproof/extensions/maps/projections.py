@@ -17,7 +17,7 @@ _SCALE, _EASTING = 0.9996, 500_000.0
 def transverse_mercator(
     latitude: float, longitude: float, origin: tuple[float, float]
 ) -> tuple[float, float]:
-    """x to the east and y to the north of ``origin`` (m), all in degrees. The scale at the origin is 1."""
+    """Return x (east) and y (north) of ``origin`` (m), from degrees. The scale at the origin is 1."""
     phi = math.radians(latitude)
     second = _SQUARE / (1 - _SQUARE)
     n = _AXIS / math.sqrt(1 - _SQUARE * math.sin(phi) ** 2)

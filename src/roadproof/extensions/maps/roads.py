@@ -5,19 +5,19 @@ from pathlib import Path
 
 from roadproof.errors import UsageError
 from roadproof.evidence.codec import write
-from roadproof.evidence.drive_file import road_said
+from roadproof.evidence.drive_file import road_data
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.maps import answer as kept
+from roadproof.extensions.maps import answer as map_data
 from roadproof.extensions.maps.opendrive import read_map
 from roadproof.extensions.maps.overview import MapStretch, describe, stretches_of
 from roadproof.extensions.maps.picture import draw_stretches
 from roadproof.extensions.maps.selection import LANELETS, read_selection
 from roadproof.extensions.maps.stretch import select
-from roadproof.runtime.files import write_whole
+from roadproof.runtime.files import write_atomic
 from roadproof.runtime.version import VERSION
 from roadproof.world.models import load_road
+from roadproof.world.not_read import not_read_note
 from roadproof.world.road import Road
-from roadproof.world.unread import unread_note
 
 PICTURES = (".svg", ".png")
 
@@ -40,37 +40,41 @@ def stretches(
     """
     path, selection = read_selection(str(map_file))
     if "#" in str(map_file):
-        found: tuple[MapStretch, ...] = (describe(str(map_file), "", "", select(path, selection)),)
+        map_stretches: tuple[MapStretch, ...] = (describe(str(map_file), "", "", select(path, selection)),)
     else:
-        found = all_stretches(path)
-    left_out_of(map_file, found, strict)
+        map_stretches = all_stretches(path)
+    omission_notes(map_file, map_stretches, strict)
     if out is not None:
         kind = Path(out).suffix
         if kind not in PICTURES:
             raise UsageError(f"out={out}: name a file that ends in {' or '.join(PICTURES)}")
-        write_whole(Path(out), draw_stretches(path.name, found)[kind[1:]])
-    return found
+        write_atomic(Path(out), draw_stretches(path.name, map_stretches)[kind[1:]])
+    return map_stretches
 
 
-def left_out_of(map_file: str | Path, found: Iterable[MapStretch], strict: bool = False) -> tuple[str, ...]:
+def omission_notes(
+    map_file: str | Path, map_stretches: Iterable[MapStretch], strict: bool = False
+) -> tuple[str, ...]:
     """The note on parts of the map that were left out; if ``strict``, there may be none.
 
     Raises ``InputError``.
     """
-    parts = dict.fromkeys(part for stretch in found for part in stretch.unread)
-    return unread_note(Path(str(map_file).partition("#")[0]), parts, strict)
+    parts = dict.fromkeys(part for stretch in map_stretches for part in stretch.unread)
+    return not_read_note(Path(str(map_file).partition("#")[0]), parts, strict)
 
 
-def as_data(map_file: str | Path, found: tuple[MapStretch, ...]) -> JsonObject:
+def as_data(map_file: str | Path, map_stretches: tuple[MapStretch, ...]) -> JsonObject:
     """The stretches of a map as plain data."""
-    said, left_out = tuple(map(_said, found)), left_out_of(map_file, found)
-    return write(kept.Answer(roadproof=VERSION, map=str(map_file), stretches=said, left_out=left_out))
+    data, left_out = tuple(map(_stretch_data, map_stretches)), omission_notes(map_file, map_stretches)
+    return write(map_data.MapData(roadproof=VERSION, map=str(map_file), stretches=data, left_out=left_out))
 
 
-def _said(stretch: MapStretch) -> kept.Stretch:
-    spans = tuple(kept.Span(zone=x.zone, begin=float(x.begin), end=float(x.end)) for x in stretch.zones)
-    lanelets = road_said(Road("", stretch.lanelets, frozenset())).lanelets
-    return kept.Stretch(
+def _stretch_data(stretch: MapStretch) -> map_data.StretchData:
+    spans = tuple(
+        map_data.ZoneSpanData(zone=x.zone, begin=float(x.begin), end=float(x.end)) for x in stretch.zones
+    )
+    lanelets = road_data(Road("", stretch.lanelets, frozenset())).lanelets
+    return map_data.StretchData(
         select=stretch.select,
         name=stretch.name,
         length=float(stretch.length),
@@ -87,7 +91,7 @@ def _said(stretch: MapStretch) -> kept.Stretch:
 
 
 def all_stretches(path: Path) -> tuple[MapStretch, ...]:
-    """What can be selected of the map of a file. Raises ``InputError``."""
+    """Return the stretches of a file's map that can be selected. Raises ``InputError``."""
     if path.suffix not in LANELETS:
         return stretches_of(path, read_map(path))
     from roadproof.extensions.maps.lanelet_overview import ways_of

@@ -1,9 +1,9 @@
-"""What the schemas of the JSON files of this extension are called."""
+"""Titles of the schemas of this extension's JSON files."""
 
 from collections.abc import Mapping
 
 from roadproof.extensions.maps import answer
 
 TITLES: Mapping[type, str] = {
-    answer.Answer: "roadproof road --json: the roads of a map",
+    answer.MapData: "roadproof road --json: the roads of a map",
 }

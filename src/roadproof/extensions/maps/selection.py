@@ -13,7 +13,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from roadproof.errors import InputError, UsageError
-from roadproof.extensions.maps.carriageway import Carriageway, DirectedRoad, carriageway, driven
+from roadproof.extensions.maps.carriageway import Carriageway, DirectedRoad, carriageway, driven_lanes
 from roadproof.extensions.maps.opendrive import MapRoad, RoadMap
 from roadproof.world.lanelet_rules import check_lanelets
 from roadproof.world.reference_line import Part, ReferenceLine
@@ -46,8 +46,8 @@ class Selection:
 
 
 @dataclass(frozen=True)
-class Stretch:
-    """What is selected: lanelets, reference line, and how far (m) edges of lanelets are from the map's.
+class SelectedStretch:
+    """A selected stretch: lanelets, reference line, and how far (m) edges of lanelets are from the map's.
 
     ``unread``: kinds of parts of the map that were not read and may have an effect.
     """
@@ -59,29 +59,29 @@ class Stretch:
 
 
 def is_map(text: str | Path) -> bool:
-    """Whether a road is a map, with a selection or without one."""
+    """Return whether a road is a map, with a selection or without one."""
     return Path(str(text).partition("#")[0]).suffix in (".xodr", *LANELETS)
 
 
 def read_selection(text: str) -> tuple[Path, Selection]:
     """The path and what is selected. Raises ``UsageError``."""
-    name, mark, said = text.partition("#")
-    given = dict[str, str]()
-    for piece in said.split(",") if mark else ():
+    name, mark, text_after_mark = text.partition("#")
+    values = dict[str, str]()
+    for piece in text_after_mark.split(",") if mark else ():
         key, equals, value = piece.partition("=")
-        if not equals or key not in _KEYS or key in given or not value:
+        if not equals or key not in _KEYS or key in values or not value:
             rule = "road=ID, route=ID+ID, way=ID, lanes=left|right, from=M, to=M, step=M"
             raise UsageError(f"road {text}: '{piece}': after # write {rule}, with commas between")
-        given[key] = value
-    if len(named := [x for x in ("road", "route", "way") if x in given]) > 1:
+        values[key] = value
+    if len(named := [x for x in ("road", "route", "way") if x in values]) > 1:
         raise UsageError(f"road {text}: {' and '.join(named)}: name one of them")
-    lanes, way, road, route = (given.get(x) for x in ("lanes", "way", "road", "route"))
+    lanes, way, road, route = (values.get(x) for x in ("lanes", "way", "road", "route"))
     if way is not None and Path(name).suffix not in LANELETS:
         raise UsageError(f"road {text}: way={way}: a road in OpenDRIVE is named by road=ID")
     if lanes not in (None, "left", "right"):
         raise UsageError(f"road {text}: lanes={lanes}: one of left, right is needed")
     roads = tuple(route.split("+")) if route is not None else () if road is None else (road,)
-    low, high, step = (_metres(text, x, given.get(x)) for x in ("from", "to", "step"))
+    low, high, step = (_metres(text, x, values.get(x)) for x in ("from", "to", "step"))
     if low is not None and high is not None and low >= high:
         raise UsageError(f"road {text}: from={float(low):g} is not below to={float(high):g}")
     if step is not None and step < Fraction(1, 100):
@@ -97,19 +97,19 @@ def _metres(text: str, key: str, value: str | None) -> Fraction | None:
         raise UsageError(f"road {text}: {key}={value}: a number of metres is needed") from None
 
 
-def stretch_of(path: Path, known_map: RoadMap, selection: Selection) -> Stretch:
-    """As ``select``, from the roads of the file."""
+def stretch_of(path: Path, known_map: RoadMap, selection: Selection) -> SelectedStretch:
+    """Return the selected stretch of the roads of a file."""
     ways = directed(path, known_map, selection)
-    made = carriageway(ways, selection.step or STEP)
-    if not made.lanelets:
+    whole_road = carriageway(ways, selection.step or STEP)
+    if not whole_road.lanelets:
         raise InputError(
             f"{ways[0].road.where}: no lane is driven on in this direction; try lanes=left or right"
         )
     line = ReferenceLine(tuple(part for way in ways for part in _parts(way)))
-    lanelets = tuple(cut(path, made, _span(ways, selection)))
+    lanelets = tuple(cut(path, whole_road, _span(ways, selection)))
     check_lanelets(lanelets, ways[0].road.where)
-    unread = (*known_map.unread, *dict.fromkeys(x for way in ways for x in way.road.unread))
-    return Stretch(lanelets, line, made.width_error, unread)
+    ignored_parts = (*known_map.unread, *dict.fromkeys(x for way in ways for x in way.road.unread))
+    return SelectedStretch(lanelets, line, whole_road.width_error, ignored_parts)
 
 
 def directed(path: Path, known_map: RoadMap, selection: Selection) -> tuple[DirectedRoad, ...]:
@@ -118,8 +118,10 @@ def directed(path: Path, known_map: RoadMap, selection: Selection) -> tuple[Dire
     names += known_map.refused
     if not selection.roads and len(names) > 1:
         shown = ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
-        told = f"{len(names)} roads ({shown}); name one as {path}#road=ID; roadproof road {path} lists them"
-        raise InputError(f"{path}: {told}")
+        problem = (
+            f"{len(names)} roads ({shown}); name one as {path}#road=ID; roadproof road {path} lists them"
+        )
+        raise InputError(f"{path}: {problem}")
     for name in selection.roads:
         if name in known_map.refused:
             raise InputError(known_map.refused[name])
@@ -135,36 +137,36 @@ def _single(road: MapRoad, selection: Selection) -> DirectedRoad:
         right_is_forward = road.rule == "RHT"
         return DirectedRoad(road, selection.against != right_is_forward)
     forward = DirectedRoad(road, True)
-    there = any(driven(x, forward.side) for x in road.sections)
+    there = any(driven_lanes(x, forward.side) for x in road.sections)
     return forward if there else DirectedRoad(road, False)
 
 
 def _span(ways: tuple[DirectedRoad, ...], selection: Selection) -> tuple[Fraction | None, Fraction | None]:
-    """Along the way, from s of the map; a route has its own s from 0."""
+    """Return the span along the way, from s of the map; a route has its own s from 0."""
     low, high = selection.span
     if len(ways) > 1 or ways[0].forward:
         return low, high
     return (None if high is None else ways[0].s(high)), (None if low is None else ways[0].s(low))
 
 
-def cut(path: Path, made: Carriageway, span: tuple[Fraction | None, Fraction | None]) -> list[Lanelet]:
+def cut(path: Path, whole_road: Carriageway, span: tuple[Fraction | None, Fraction | None]) -> list[Lanelet]:
     """The lanelets between two places, None for the ends of the road. Raises ``InputError``."""
-    if not made.lanelets:
+    if not whole_road.lanelets:
         raise InputError(f"{path}: no lane of the road has a length and a width")
-    found = []
-    for x in made.lanelets:
+    selected = []
+    for x in whole_road.lanelets:
         begin, end = x.s
         assert begin is not None
         assert end is not None
         low = begin if span[0] is None else max(begin, span[0])
         high = end if span[1] is None else min(end, span[1])
         if low < high:
-            found.append(Lanelet(x.id, x.lane, x.zone, x.attribute, (low, high), x.d))
-    if not found:
-        ends = [x for lanelet in made.lanelets for x in lanelet.s if x is not None]
+            selected.append(Lanelet(x.id, x.lane, x.zone, x.attribute, (low, high), x.d))
+    if not selected:
+        ends = [x for lanelet in whole_road.lanelets for x in lanelet.s if x is not None]
         there = f"the road goes from {float(min(ends)):g} m to {float(max(ends)):g} m"
         raise InputError(f"{path}: from={span[0]}, to={span[1]}: {there}")
-    return found
+    return selected
 
 
 def _parts(way: DirectedRoad) -> list[Part]:
@@ -188,14 +190,14 @@ def _route(path: Path, roads: list[MapRoad]) -> tuple[DirectedRoad, ...]:
         if not ways:  # the first one: as it joins the second
             both = (DirectedRoad(road, True), DirectedRoad(road, False))
             options = [x for x in both if any(_joined([x], roads[1], y) for y in (True, False))]
-        found = [x for x in options if x is not None]
-        if not found:
+        joined = [x for x in options if x is not None]
+        if not joined:
             before = roads[max(len(ways) - 1, 0)]
             rule = "only traffic along one road is supported, no crossing traffic"
             raise InputError(
                 f"{path}: route: road {road.id} does not go on from road {before.id} at either end: {rule}"
             )
-        ways.append(found[0])
+        ways.append(joined[0])
     return tuple(ways)
 
 

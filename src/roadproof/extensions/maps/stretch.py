@@ -3,12 +3,18 @@
 from pathlib import Path
 
 from roadproof.extensions.maps.opendrive import read_map
-from roadproof.extensions.maps.selection import LANELETS, Selection, Stretch, read_selection, stretch_of
+from roadproof.extensions.maps.selection import (
+    LANELETS,
+    SelectedStretch,
+    Selection,
+    read_selection,
+    stretch_of,
+)
 from roadproof.world.lanelet_rules import shared_boundaries
 from roadproof.world.road import Road
 
 
-def select(path: Path, selection: Selection, origin: tuple[float, float] | None = None) -> Stretch:
+def select(path: Path, selection: Selection, origin: tuple[float, float] | None = None) -> SelectedStretch:
     """The stretch of a map. Raises ``InputError`` that names the file, the element and the rule.
 
     ``origin``: the point in UTM (m) from which places count in Lanelet2, instead of the middle of the map.
@@ -26,6 +32,6 @@ def road_of(text: str) -> Road:
     Raises ``InputError``; ``UsageError`` for a stretch that is not well said.
     """
     path, selection = read_selection(text)
-    found = select(path, selection)
-    beside = shared_boundaries(found.lanelets)
-    return Road(path.stem, found.lanelets, beside, found.line, text, found.unread)
+    selected = select(path, selection)
+    beside = shared_boundaries(selected.lanelets)
+    return Road(path.stem, selected.lanelets, beside, selected.line, text, selected.unread)

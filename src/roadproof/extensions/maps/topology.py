@@ -1,4 +1,4 @@
-"""Which lanelets are of ramps, from how lanelets follow and neighbour each other, where no type says so.
+"""Finds the lanelets of ramps from successors and neighbours, where a map has no type for them.
 
 Lanelets are put into chains along the road: of several successors the one with most neighbours is
 followed, then the one that goes on straightest, and of several predecessors likewise. The chain with most
@@ -55,7 +55,7 @@ class MeasuredLanelet:
 
     @property
     def length(self) -> float:
-        """Of the line in the middle, in m."""
+        """The length (m) of the middle line."""
         return float(np.hypot(*np.diff(self.centre, axis=0).T).sum())
 
 
@@ -74,13 +74,13 @@ def attributes_of(lanelets: Mapping[str, MeasuredLanelet]) -> dict[str, tuple[At
     Where a type says it of any lanelet of a carriageway, the others of that carriageway are main.
     """
     links, chains = _links(lanelets), chains_of(lanelets)
-    found: dict[str, tuple[Attribute, str]] = {
+    attributes: dict[str, tuple[Attribute, str]] = {
         name: (x.attribute or "main", "") for name, x in lanelets.items()
     }
     for way in carriageways_of(lanelets):
         if not any(lanelets[name].attribute for name in way):
-            found |= _infer(links, [chain for chain in chains if chain[0] in way])
-    return found
+            attributes |= _infer(links, [chain for chain in chains if chain[0] in way])
+    return attributes
 
 
 def carriageways_of(lanelets: Mapping[str, MeasuredLanelet]) -> tuple[tuple[str, ...], ...]:
@@ -97,9 +97,9 @@ def chains_of(lanelets: Mapping[str, MeasuredLanelet]) -> tuple[tuple[str, ...],
         following = min(x.successors, key=partial(_turn, links, name), default=None)
         if following is not None and _straightest_before(links, following) == name:
             after[name] = following
-    begun = [x for x in lanelets if x not in after.values()]
+    firsts = [x for x in lanelets if x not in after.values()]
     chains, seen = [], set[str]()
-    for first in (*begun, *lanelets):  # what is left is a ring, begun anywhere
+    for first in (*firsts, *lanelets):  # what is left is a ring, begun anywhere
         chain: list[str] = []
         current: str | None = first
         while current is not None and current not in seen:
@@ -129,12 +129,12 @@ def main_way(lanelets: Mapping[str, MeasuredLanelet], chains: Iterable[tuple[str
 
 
 def length_of(lanelets: Mapping[str, MeasuredLanelet], chain: Iterable[str]) -> float:
-    """Of the middles of some lanelets together, in m."""
+    """Return the sum of the lengths (m) of the lanelets' middle lines."""
     return sum(lanelets[name].length for name in chain)
 
 
 def closure(names: Iterable[str], links: Iterable[tuple[str, str]]) -> dict[str, tuple[str, ...]]:
-    """For each name all those that ``links``, read both ways, connect it to."""
+    """Return for each name all names that ``links``, read both ways, connect it to."""
     group = {name: [name] for name in names}
     for one, other in links:
         if group[one] is not group[other]:
@@ -147,7 +147,7 @@ def closure(names: Iterable[str], links: Iterable[tuple[str, str]]) -> dict[str,
 def _infer(links: _Links, chains: list[tuple[str, ...]]) -> dict[str, tuple[Attribute, str]]:
     """Attributes of the lanelets of one carriageway that are not of its main road, with the reason."""
     main = main_way(links.lanelets, chains)
-    found: dict[str, tuple[Attribute, str]] = {}
+    attributes: dict[str, tuple[Attribute, str]] = {}
     for chain in chains:
         if chain == main:
             continue
@@ -155,18 +155,18 @@ def _infer(links: _Links, chains: list[tuple[str, ...]]) -> dict[str, tuple[Attr
         merging, departing = _merges(links, chain, with_main), _departs(links, chain, with_main)
         if merging and departing:
             half = _middle(links, chain, with_main)
-            told = f"{merging}, and it {departing}"
-            found |= dict.fromkeys(chain[:half], ("merge", told))
-            found |= dict.fromkeys(chain[half:], ("departure", told))
+            reason = f"{merging}, and it {departing}"
+            attributes |= dict.fromkeys(chain[:half], ("merge", reason))
+            attributes |= dict.fromkeys(chain[half:], ("departure", reason))
         elif merging:
-            found |= dict.fromkeys(chain, ("merge", merging))
+            attributes |= dict.fromkeys(chain, ("merge", merging))
         elif departing:
-            found |= dict.fromkeys(chain, ("departure", departing))
-    return found
+            attributes |= dict.fromkeys(chain, ("departure", departing))
+    return attributes
 
 
 def _merges(links: _Links, chain: tuple[str, ...], with_main: list[bool]) -> str:
-    """Why a chain merges; "" where it does not."""
+    """Return why a chain merges; "" where it does not."""
     last = chain[-1]
     if links.lanelets[last].successors:
         return f"leads into {links.lanelets[last].successors[0]}"
@@ -178,20 +178,20 @@ def _merges(links: _Links, chain: tuple[str, ...], with_main: list[bool]) -> str
 
 
 def _departs(links: _Links, chain: tuple[str, ...], with_main: list[bool]) -> str:
-    """Why a chain departs; "" where it does not."""
+    """Return why a chain departs; "" where it does not."""
     first = chain[0]
     if links.predecessors[first]:
         return f"leaves {links.predecessors[first][0]}"
     if any(links.predecessors[other] for other in links.across[first]):
         return f"begins at {first} beside lanelets that were there before"
     if not with_main[-1] and True in with_main:
-        last = [name for name, held in zip(chain, with_main, strict=True) if held][-1]
+        last = [name for name, beside in zip(chain, with_main, strict=True) if beside][-1]
         return f"goes away from the side of the main road after {last}"
     return ""
 
 
 def _middle(links: _Links, chain: tuple[str, ...], with_main: list[bool]) -> int:
-    """How many lanelets of a chain merge before the others depart."""
+    """Return how many lanelets of a chain merge before the others depart."""
     begin = with_main.index(True) if True in with_main else 0
     end = len(chain) - (with_main[::-1].index(True) if True in with_main else 0)
     half = length_of(links.lanelets, chain[begin:end]) / 2
@@ -218,7 +218,7 @@ def _straightest_before(links: _Links, name: str) -> str:
 
 
 def _turn(links: _Links, one: str, other: str) -> tuple[int, float]:
-    """How little it is the way on: first by the neighbours that it has, then by the angle it turns by."""
+    """Return how unlikely it is that the way goes on here: by other neighbours first, then by the angle."""
     fewer = -min(len(links.across[one]), len(links.across[other]))
     before, after = (links.lanelets[x].centre for x in (one, other))
     # The way of a branch shows some metres on, and what comes in shows some metres before.

@@ -1,6 +1,6 @@
-"""What an animation of a drive shows where its road has bends: the same shapes, to scale, as polygons.
+"""Animations of drives on roads with bends: the shapes of ``scene`` as polygons, to scale.
 
-The view goes and turns with the subject: the road at the middle of the window is always level.
+The view moves and turns with the subject: the road at the middle of the window is always level.
 """
 
 import math
@@ -15,26 +15,28 @@ from roadproof.extensions.pages.scene import (
     LANE_PIXELS,
     TITLE,
     WIDTH,
+    AnimationScene,
     Pavement,
-    Polygon,
-    Scene,
+    PavementShift,
+    PolygonShape,
     Shape,
-    Shift,
-    Strokes,
-    Text,
+    StrokesShape,
+    TextShape,
 )
 from roadproof.frontends.report import drive_data as data
 from roadproof.frontends.report.drive import SHADES
-from roadproof.frontends.report.plane import Point, Points, View, extent_of, views_along
+from roadproof.frontends.report.plane import Point, Points, RoadView, extent_of, views_along
 from roadproof.library.specification import Library
 from roadproof.runtime.records import dataclass
 
 HIGHEST = 0.5
-"""The height of the road in the picture, as a share of its width, at most."""
+"""The largest height of the road in the picture, as a share of its width."""
 EVERY, PARTS = 5, 16
-"""Instants between the views from which the scale is chosen; parts of an edge that moves."""
+"""The step between views from which the scale is chosen, in instants; the number of parts of a
+moving edge.
+"""
 LETTERS = (9, 11)
-"""Pixels of a letter of a name: across and high."""
+"""The width and height of a letter of a name in px."""
 
 
 def scene_of(
@@ -45,24 +47,24 @@ def scene_of(
     top: float = TITLE,
     lane_pixels: float = LANE_PIXELS,
     grain: Fraction = data.GRAIN,
-) -> Scene:
-    """The scene of a drive, on a straight road or on one with bends."""
-    kind = Scene if file.road.line is None else BentScene
+) -> AnimationScene:
+    """Return the scene of a drive, on a straight road or on one with bends."""
+    kind = AnimationScene if file.road.line is None else BentScene
     return kind(file, library, width, edge, top, lane_pixels, grain)
 
 
 @dataclass(frozen=True)
-class BentScene(Scene):
+class BentScene(AnimationScene):
     """A drive on a road with bends; ``scale`` is the same along and across."""
 
     @cached_property
-    def views(self) -> list[View]:
-        """From where the picture is seen at each instant: the middle of the window."""
+    def views(self) -> list[RoadView]:
+        """The view at each instant, from the middle of the window."""
         return views_along(self.file.road, (x.s for x in self.states[self.subject]), self.window)
 
     @cached_property
     def extent(self) -> data.Box:
-        """What the road within the window takes of the plane, in m, as some of the views see it."""
+        """The extent of the road within the window in the plane (m), as some of the views see it."""
         return extent_of([*self.views[::EVERY], self.views[-1]], self.window, self.across)
 
     @cached_property
@@ -78,59 +80,63 @@ class BentScene(Scene):
 
     @cached_property
     def road(self) -> data.ShownRoad:
-        """As far as the corners of the picture may reach."""
+        """The road as far as the corners of the picture may reach."""
         low, high = self.window
         more = (high - low) / 2
         seen = low + min(self.travel) - more, high + max(self.travel) + more
         return data.road_in(self.file.road, self.states[self.subject][0].s, seen)
 
     def place(self, point: Point) -> Point:
-        """A point of a view in pixels."""
+        """Return a point of a view in px."""
         left, right, _, top = self.extent
         x, y = point
         return self.width / 2 + (x - (left + right) / 2) * self.scale[0], self.top + (top - y) * self.scale[1]
 
     def places(self, points: Points) -> Points:
-        """Points of a view in pixels."""
+        """Return points of a view in px."""
         return [self.place(x) for x in points]
 
     def pavement(self) -> Pavement:
-        """The lanes as the first view sees them, and how the others move and turn them."""
+        """Return the lanes as the first view sees them, and how they shift and turn at each instant."""
         first, shapes = self.views[0], list[Shape]()
         for zone, along, (right, left) in self.road.pieces:
-            shapes.append(Polygon([self.places(first.outline((*along, right, left)))], SHADES[zone]))
+            shapes.append(PolygonShape([self.places(first.outline((*along, right, left)))], SHADES[zone]))
             for d in (left, right):
                 inner = self.across[0] < d < self.across[1]
                 lines = first.dashes(*along, d, DASH) if inner else [first.edge(*along, d)]
-                shapes.append(Strokes([self.places(x) for x in lines], "#888888"))
+                shapes.append(StrokesShape([self.places(x) for x in lines], "#888888"))
         window = self.edge, self.top, self.width - 2 * self.edge, self.road_height
         return Pavement(window, shapes, tuple(self._shifts()), self.place((0.0, 0.0)))
 
-    def _shifts(self) -> Iterator[Shift]:
+    def _shifts(self) -> Iterator[PavementShift]:
         first = before = self.views[0]
         turned = 0.0
         for view in self.views:
             x, y = first.seen(view.pose.x, view.pose.y)
             turned += math.remainder(view.pose.heading - before.pose.heading, math.tau)
             before = view
-            yield Shift(-x * self.scale[0], y * self.scale[1], math.degrees(turned))
+            yield PavementShift(-x * self.scale[0], y * self.scale[1], math.degrees(turned))
 
     def areas(self) -> Iterator[Shape]:
-        """The area within RSS distances of SV, for each other vehicle; red while that vehicle is in it."""
+        """Yield the area within RSS distances of SV, for each other vehicle; red while that
+        vehicle is in it.
+        """
         for x in self.envelopes:
             seen = zip(self.views, x.boxes, strict=True)
             outlines = [self.places(view.outline(box, PARTS)) for view, box in seen]
-            yield Polygon(outlines, self.colours[x.other], 0.2, x.near)
+            yield PolygonShape(outlines, self.colours[x.other], 0.2, x.near)
 
     def vehicles(self) -> Iterator[Shape]:
-        """The boxes in the direction of the road, each with its name inside, or above if it is too small."""
+        """Yield the vehicles in the direction of the road, each with its name inside, or above where it does
+        not fit.
+        """
         for name, colour in self.colours.items():
             seen = [(view, self.box(name, k)) for k, view in enumerate(self.views)]
-            yield Polygon([self.places(view.vehicle(box)) for view, box in seen], colour)
+            yield PolygonShape([self.places(view.vehicle(box)) for view, box in seen], colour)
             centres = [self.place(view.at((a + b) / 2, (c + d) / 2)) for view, (a, b, c, d) in seen]
             motion = self.file.drive.vehicles[name]
             long, wide = (float(x) * self.scale[0] for x in (motion.length, motion.width))
             fits = long >= LETTERS[0] * len(name) and wide >= LETTERS[1]
             down = 4 if fits else -4 - wide / 2
             places = [(x, y + down) for x, y in centres]
-            yield Text(name, places, "white" if fits else colour, size=11, middle=True)
+            yield TextShape(name, places, "white" if fits else colour, size=11, middle=True)

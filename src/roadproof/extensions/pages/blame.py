@@ -1,8 +1,8 @@
-"""Why a formula is true or false at an instant: which of its parts make it so, and when.
+"""Explains why a formula is true or false at an instant: which of its parts make it so, and when.
 
-What is named is enough: whatever the other parts were, and these at other times, the formula would be the
-same. It is not always least, since of several reasons at one instant the first in the text is taken, and
-over a stretch of time all that is of the same kind.
+The result is sufficient: whatever the values of other parts, and of these parts at other times, the formula
+keeps its value. It is not always minimal: of several reasons at one instant it has the first in the text, and
+over a stretch of time all reasons of the same kind.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -13,39 +13,40 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.semantics.exact import truth as sets
 from roadproof.semantics.exact.algebraic import moved
-from roadproof.semantics.exact.exact import Judgement, seconds
+from roadproof.semantics.exact.judging import Judgement, interval_seconds
 
 Blame: TypeAlias = Mapping[Formula, sets.TruthSet]
-_Want: TypeAlias = Callable[[Formula, sets.TruthSet, bool], None]
+_Require: TypeAlias = Callable[[Formula, sets.TruthSet, bool], None]
 
 
 def blame(judgement: Judgement, formula: Formula | None = None, at: Fraction = Fraction(0)) -> Blame:
-    """The instants at which each part makes ``formula`` (the whole where None) what it is at ``at`` (s).
+    """Return the instants at which each part makes ``formula`` true or false at time ``at`` (s).
 
-    Parts that have no share in it are left out. Raises ``UsageError`` where it is no judged part.
+    ``formula``: a judged part, the whole formula where None. Parts without influence are left out. Raises
+    ``UsageError`` for a formula that is no judged part.
     """
-    asked = judgement.formula if formula is None else formula
-    wanted: dict[tuple[Formula, bool], sets.TruthSet] = {}
+    whole = judgement.formula if formula is None else formula
+    required: dict[tuple[Formula, bool], sets.TruthSet] = {}
 
-    def want(part: Formula, instants: sets.TruthSet, value: bool) -> None:
+    def require(part: Formula, instants: sets.TruthSet, value: bool) -> None:
         if instants.cuts:
-            wanted[part, value] = sets.union([wanted.get((part, value), sets.NEVER), instants])
+            required[part, value] = sets.union([required.get((part, value), sets.NEVER), instants])
 
-    want(asked, sets.interval(at, at), judgement.truth(asked).at(at))
-    for part in _parents_first(asked):
+    require(whole, sets.interval(at, at), judgement.truth(whole).at(at))
+    for part in _parents_first(whole):
         for value in (True, False):
-            instants = wanted.get((part, value), sets.NEVER)
+            instants = required.get((part, value), sets.NEVER)
             if instants.cuts:
-                _share(judgement, part, instants, value, want)
-    parts = dict.fromkeys(part for part, _ in wanted)
+                _require_parts(judgement, part, instants, value, require)
+    parts = dict.fromkeys(part for part, _ in required)
     return {
-        part: sets.union([wanted.get((part, True), sets.NEVER), wanted.get((part, False), sets.NEVER)])
+        part: sets.union([required.get((part, True), sets.NEVER), required.get((part, False), sets.NEVER)])
         for part in parts
     }
 
 
 def _parents_first(formula: Formula) -> Iterator[Formula]:
-    """Every sub-formula once, after all that it is a part of."""
+    """Yield every sub-formula once, after all formulas that contain it."""
     done: list[Formula] = []
     seen: set[Formula] = set()
     waiting = [(formula, False)]
@@ -60,75 +61,85 @@ def _parents_first(formula: Formula) -> Iterator[Formula]:
     return reversed(done)
 
 
-def _share(judgement: Judgement, part: Formula, instants: sets.TruthSet, value: bool, want: _Want) -> None:
-    """Ask of the direct parts what makes ``part`` have ``value`` at all of ``instants``."""
+def _require_parts(
+    judgement: Judgement, part: Formula, instants: sets.TruthSet, value: bool, require: _Require
+) -> None:
+    """Require of the direct parts what makes ``part`` have ``value`` at all of ``instants``."""
     match part:
         case f.Truth() | f.Compare():
             return
         case f.Not(body):
-            want(body, instants, not value)
+            require(body, instants, not value)
         case f.Application(_, _, body):
-            want(body, instants, value)
+            require(body, instants, value)
         case f.And(parts) | f.Or(parts):
             if isinstance(part, f.And) is value:
                 for one in parts:
-                    want(one, instants, value)
+                    require(one, instants, value)
             else:
-                _some_of(judgement, parts, instants, value, want)
+                _require_first(judgement, parts, instants, value, require)
         case f.Eventually(bounds, body) | f.Always(bounds, body):
-            window = _later(instants, *seconds(bounds))
+            window = _shifted(instants, *interval_seconds(bounds))
             if isinstance(part, f.Always) is value:
-                want(body, window, value)
+                require(body, window, value)
             else:
-                want(body, _first(instants, sets.intersection([window, _is(judgement, body, value)])), value)
+                require(
+                    body,
+                    _first_stretch(
+                        instants, sets.intersection([window, _instants_with(judgement, body, value)])
+                    ),
+                    value,
+                )
         case f.Until():
-            _until(judgement, part, instants, value, want)
+            _require_until(judgement, part, instants, value, require)
         case f.Occupies() | f.Some() | f.Every():
             raise AssertionError("what is judged is bound to a road")
         case _:
             assert_never(part)
 
 
-def _some_of(
-    judgement: Judgement, parts: tuple[Formula, ...], instants: sets.TruthSet, value: bool, want: _Want
+def _require_first(
+    judgement: Judgement, parts: tuple[Formula, ...], instants: sets.TruthSet, value: bool, require: _Require
 ) -> None:
-    """At each instant the first of ``parts`` that has ``value``."""
-    left = instants
-    for one in parts:
-        here = _is(judgement, one, value)
-        want(one, sets.intersection([left, here]), value)
-        left = sets.intersection([left, sets.complement(here)])
+    """Require at each instant the first of ``parts`` that has ``value``."""
+    remaining = instants
+    for part in parts:
+        here = _instants_with(judgement, part, value)
+        require(part, sets.intersection([remaining, here]), value)
+        remaining = sets.intersection([remaining, sets.complement(here)])
 
 
-def _until(judgement: Judgement, part: f.Until, instants: sets.TruthSet, value: bool, want: _Want) -> None:
-    low, high = seconds(part.interval)
-    window = _later(instants, low, high)
-    left = _is(judgement, part.left, value)
-    right = _is(judgement, part.right, value)
+def _require_until(
+    judgement: Judgement, part: f.Until, instants: sets.TruthSet, value: bool, require: _Require
+) -> None:
+    low, high = interval_seconds(part.interval)
+    window = _shifted(instants, low, high)
+    left = _instants_with(judgement, part.left, value)
+    right = _instants_with(judgement, part.right, value)
     if not _is_instant(instants):
-        want(part.left, sets.intersection([window, left]), value)
-        want(part.right, sets.intersection([window, right]), value)
+        require(part.left, sets.intersection([window, left]), value)
+        require(part.right, sets.intersection([window, right]), value)
     elif value:
         reached = _first_span(sets.intersection([window, right]))
-        want(part.right, reached, True)
-        want(part.left, sets.intersection([_up_to(window, reached), left]), True)
+        require(part.right, reached, True)
+        require(part.left, sets.intersection([_up_to_end(window, reached), left]), True)
     else:
         broken = _first_span(sets.intersection([window, left]))
-        want(part.left, broken, False)
-        want(part.right, _until_begin(window, broken), False)
+        require(part.left, broken, False)
+        require(part.right, _up_to_start(window, broken), False)
 
 
-def _is(judgement: Judgement, part: Formula, value: bool) -> sets.TruthSet:
+def _instants_with(judgement: Judgement, part: Formula, value: bool) -> sets.TruthSet:
     truth = judgement.truth(part)
     return truth if value else sets.complement(truth)
 
 
-def _later(instants: sets.TruthSet, low: Fraction, high: Fraction | None) -> sets.TruthSet:
-    """All instants that are ``low`` to ``high`` seconds after one of ``instants``."""
-    return sets.union([sets.TruthSet(_moved(span, low, high)) for span in instants.spans()])
+def _shifted(instants: sets.TruthSet, low: Fraction, high: Fraction | None) -> sets.TruthSet:
+    """Return all instants that are ``low`` to ``high`` seconds after one of ``instants``."""
+    return sets.union([sets.TruthSet(_shifted_cuts(span, low, high)) for span in instants.spans()])
 
 
-def _moved(span: sets.Span, low: Fraction, high: Fraction | None) -> tuple[sets.Cut, ...]:
+def _shifted_cuts(span: sets.Span, low: Fraction, high: Fraction | None) -> tuple[sets.Cut, ...]:
     begin = sets.Cut(moved(span.begin.point, low), span.begin.after)
     if span.end is None or high is None:
         return (begin,)
@@ -140,23 +151,25 @@ def _is_instant(instants: sets.TruthSet) -> bool:
     return len(spans) == 1 and spans[0].end is not None and spans[0].begin.point == spans[0].end.point
 
 
-def _first(instants: sets.TruthSet, found: sets.TruthSet) -> sets.TruthSet:
-    """One stretch of ``found`` is enough for one instant; for more all of it is taken."""
-    return _first_span(found) if _is_instant(instants) else found
+def _first_stretch(instants: sets.TruthSet, truth: sets.TruthSet) -> sets.TruthSet:
+    """Return the first stretch of ``truth`` for a single instant, all of ``truth`` for more."""
+    return _first_span(truth) if _is_instant(instants) else truth
 
 
 def _first_span(truth: sets.TruthSet) -> sets.TruthSet:
     return sets.TruthSet(truth.cuts[:2])
 
 
-def _up_to(window: sets.TruthSet, reached: sets.TruthSet) -> sets.TruthSet:
-    """The window up to the end of what was reached."""
+def _up_to_end(window: sets.TruthSet, reached: sets.TruthSet) -> sets.TruthSet:
+    """Return the window up to the end of ``reached``."""
     end = reached.cuts[1:2]
     return sets.intersection([window, sets.ALWAYS if not end else sets.complement(sets.TruthSet(end))])
 
 
-def _until_begin(window: sets.TruthSet, broken: sets.TruthSet) -> sets.TruthSet:
-    """The window up to the first instant of ``broken``, with it; all of it where there is none."""
+def _up_to_start(window: sets.TruthSet, broken: sets.TruthSet) -> sets.TruthSet:
+    """Return the window up to and including the first instant of ``broken``; all of it where that
+    is empty.
+    """
     if not broken.cuts:
         return window
     return sets.intersection(

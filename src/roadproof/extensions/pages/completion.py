@@ -1,4 +1,4 @@
-"""What a shell completes formats of animations with."""
+"""Shell completion of animation formats."""
 
 from collections.abc import Mapping
 
@@ -6,5 +6,5 @@ from roadproof.frontends.report.animations import animations
 
 
 def formats() -> Mapping[str, str]:
-    """The formats of ``--animate``."""
+    """Return the formats of ``--animate``."""
     return dict.fromkeys(animations(), "")

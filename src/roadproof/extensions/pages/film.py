@@ -1,4 +1,4 @@
-"""Frames as a GIF or MP4 file: the one home of Pillow and of the program ffmpeg."""
+"""Encodes frames as a GIF or MP4 file; the only module that uses Pillow and the program ffmpeg."""
 
 import shutil
 import subprocess
@@ -22,10 +22,10 @@ _MISSING = "mp4 needs the program ffmpeg: install it, such as by apt-get install
 
 @dataclass(frozen=True)
 class Film:
-    """Frames, of which ``draw`` gives the RGBA bytes.
+    """A film; ``draw`` returns the RGBA bytes of a frame by its number.
 
-    ``size``: pixels, both even; ``grain``: seconds a frame; ``pause``: those of the last one;
-    ``still``: the number of the frame that shows most.
+    ``size``: width and height in px, both even; ``grain``: seconds per frame; ``pause``: seconds of the last
+    frame; ``still``: the number of the most telling frame.
     """
 
     size: tuple[int, int]
@@ -37,13 +37,13 @@ class Film:
 
 
 def need(ending: str) -> None:
-    """Raises ``MissingSolverError`` where files of this ending need a program that is not there."""
+    """Raise ``MissingSolverError`` where files with this ending need a program that is missing."""
     if ending == ".mp4" and shutil.which("ffmpeg") is None:
         raise MissingSolverError(_MISSING)
 
 
 def as_gif(film: Film) -> bytes:
-    """An endless GIF file. Raises ``MissingSolverError`` without Pillow."""
+    """Return the film as an endless GIF file. Raises ``MissingSolverError`` without Pillow."""
     try:
         from PIL import Image
     except ImportError:
@@ -65,29 +65,29 @@ def as_gif(film: Film) -> bytes:
 
 
 def _colours(film: Film) -> list[bytes]:
-    """The colours, as RGB, that most pixels of some frames have; flat areas keep theirs exactly.
+    """Return the most frequent colours of some frames, as RGB; flat areas keep theirs exactly.
 
-    Pillow cannot tell apart colours that differ in their last bits, so that only one of them is left.
+    Pillow cannot distinguish colours that differ in their last bits, so only one of those is listed.
     """
     counted: Counter[int] = Counter()
     for k in {film.still, *range(0, film.count, max(1, film.count // _SAMPLES)), film.count - 1}:
         counted.update(memoryview(film.draw(k)).cast("I"))
-    found: dict[tuple[int, ...], bytes] = {}
+    palette: dict[tuple[int, ...], bytes] = {}
     for pixel, _ in counted.most_common():
         rgb = pixel.to_bytes(4, sys.byteorder)[:3]
-        found.setdefault(tuple(x >> 3 for x in rgb), rgb)
-    return [*found.values()][:COLOURS]
+        palette.setdefault(tuple(x >> 3 for x in rgb), rgb)
+    return [*palette.values()][:COLOURS]
 
 
 def as_mp4(film: Film) -> bytes:
-    """An MP4 file. Raises ``MissingSolverError`` where ffmpeg is missing or cannot write one."""
+    """Return the film as an MP4 file. Raises ``MissingSolverError`` where ffmpeg is missing or fails."""
     need(".mp4")
     raw = ("-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{film.size[0]}x{film.size[1]}")
     rate = ("-r", f"{1 / film.grain}", "-i", "-")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "film.mp4"
-        told = ("-pix_fmt", "yuv420p", "-movflags", "+faststart", "-y", str(out))
-        command = ["ffmpeg", "-loglevel", "error", *raw, *rate, *told]
+        output = ("-pix_fmt", "yuv420p", "-movflags", "+faststart", "-y", str(out))
+        command = ["ffmpeg", "-loglevel", "error", *raw, *rate, *output]
         with (
             tempfile.TemporaryFile() as complaints,
             subprocess.Popen(command, stdin=subprocess.PIPE, stdout=complaints, stderr=complaints) as ran,
@@ -99,10 +99,10 @@ def as_mp4(film: Film) -> bytes:
                 ran.stdin.close()
             except BrokenPipeError:
                 pass  # ffmpeg has ended early; its words say why
-            complaints_of = ran.wait()
+            exit_code = ran.wait()
             complaints.seek(0)
-            said = complaints.read().decode(errors="replace").strip().splitlines()
-        if complaints_of or not out.is_file():
-            why = said[-1] if said else f"exit code {complaints_of}"
+            errors = complaints.read().decode(errors="replace").strip().splitlines()
+        if exit_code or not out.is_file():
+            why = errors[-1] if errors else f"exit code {exit_code}"
             raise MissingSolverError(f"ffmpeg cannot write mp4: {why}; install a full build, or write gif")
         return out.read_bytes()

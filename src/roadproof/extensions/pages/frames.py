@@ -1,7 +1,7 @@
-"""An animation of a drive as frames: the scene of the moving picture, drawn with matplotlib."""
+"""Draws an animation as frames with matplotlib; the shapes are those of the animated SVG."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import ceil
 from typing import Any, TypeVar
@@ -12,19 +12,19 @@ from roadproof.extensions.pages.film import Film
 from roadproof.extensions.pages.scene import (
     PAUSE,
     WIDTH,
-    Line,
-    Polygon,
-    Rectangle,
+    LineShape,
+    PavementShift,
+    PolygonShape,
+    RectangleShape,
     Shape,
-    Shift,
-    Strokes,
-    Text,
+    StrokesShape,
+    TextShape,
     headings,
-    rows,
+    timeline_rows,
 )
 from roadproof.frontends.report.drive import DANGER
 from roadproof.frontends.report.drive_data import Box
-from roadproof.frontends.report.figures import draw_again, make_page
+from roadproof.frontends.report.figures import make_page
 from roadproof.frontends.report.plane import Point, Points
 from roadproof.library.specification import Library
 from roadproof.runtime.records import dataclass
@@ -37,39 +37,39 @@ V = TypeVar("V")
 
 
 @dataclass(frozen=True)
-class _Mobile:
-    """A shape and the artist that draws it; ``shifts`` of the pavement about ``pivot`` at each instant."""
+class _AnimatedShape:
+    """A shape and the artist that draws it; ``shifts`` move the pavement about ``pivot`` at each instant."""
 
     shape: Shape
     artist: Any
-    shifts: Sequence[Shift] = ()
+    shifts: Sequence[PavementShift] = ()
     pivot: Point = (0.0, 0.0)
 
     @property
     def moves(self) -> bool:
-        """Whether it is not the same at all instants."""
-        return bool(self.shifts) or _count(self.shape) > 1
+        """Return whether the shape differs between instants."""
+        return bool(self.shifts) or _state_count(self.shape) > 1
 
     def show(self, k: int) -> None:
-        """Bring the artist to an instant."""
-        shape, shift = self.shape, self.shifts[k] if self.shifts else Shift(0.0)
-        if isinstance(shape, Rectangle):
-            self.artist.set_xy([*zip(*_corners(_at(shape.boxes, k), shift.x), strict=True)])
-        elif isinstance(shape, Polygon):
-            self.artist.set_xy(_shifted(_at(shape.outlines, k), shift, self.pivot))
-        elif isinstance(shape, Strokes):
+        """Set the artist to instant ``k``."""
+        shape, shift = self.shape, self.shifts[k] if self.shifts else PavementShift(0.0)
+        if isinstance(shape, RectangleShape):
+            self.artist.set_xy([*zip(*_corners(_value_at(shape.boxes, k), shift.x), strict=True)])
+        elif isinstance(shape, PolygonShape):
+            self.artist.set_xy(_shifted(_value_at(shape.outlines, k), shift, self.pivot))
+        elif isinstance(shape, StrokesShape):
             lines = [_shifted(x, shift, self.pivot) for x in shape.lines]
-            self.artist.set_data(*_joined(lines))
-        elif isinstance(shape, Line):
-            self.artist.set_data(*_strokes(_at(shape.ends, k), shape.dash, shift.x))
+            self.artist.set_data(*_polyline_points(lines))
+        elif isinstance(shape, LineShape):
+            self.artist.set_data(*_line_points(_value_at(shape.ends, k), shape.dash, shift.x))
         else:
-            self.artist.set_position(_at(shape.places, k))
-        if isinstance(shape, Rectangle | Polygon) and shape.red:
+            self.artist.set_position(_value_at(shape.places, k))
+        if isinstance(shape, RectangleShape | PolygonShape) and shape.red:
             self.artist.set_color(DANGER if shape.red[k] else shape.fill)
 
 
 def draw_film(file: DriveFile, library: Library) -> Film:
-    """The frames of a drive. Raises ``MissingSolverError`` without matplotlib."""
+    """Return the film of a drive. Raises ``MissingSolverError`` without matplotlib."""
     grain = max(Fraction(1, RATE), file.horizon / MOST_FRAMES)
     scene = scene_of(file, library, grain=grain)
     size = int(WIDTH), 2 * ceil(scene.height / 2)  # films need even numbers
@@ -78,13 +78,16 @@ def draw_film(file: DriveFile, library: Library) -> Film:
     axes.set_axis_off()
     lanes = scene.pavement()
     pivot = lanes.pivot or (0.0, 0.0)
-    road = [_Mobile(x, _draw(axes, x), lanes.shifts, pivot) for x in lanes.shapes]
-    road += [_Mobile(x, _draw(axes, x)) for x in scene.areas()]
+    road = [_AnimatedShape(x, _draw(axes, x), lanes.shifts, pivot) for x in lanes.shapes]
+    road += [_AnimatedShape(x, _draw(axes, x)) for x in scene.areas()]
     left, top, width, height = lanes.window
-    window = _draw(axes, Rectangle([(left, top - 1, width, height + 2)], "none"))  # with the edge lines
+    window = _draw(axes, RectangleShape([(left, top - 1, width, height + 2)], "none"))  # with the edge lines
     for x in road:
         x.artist.set_clip_path(window)
-    others = [_Mobile(x, _draw(axes, x)) for x in (*headings(scene), *scene.vehicles(), *rows(scene))]
+    others = [
+        _AnimatedShape(x, _draw(axes, x))
+        for x in (*headings(scene), *scene.vehicles(), *timeline_rows(scene))
+    ]
     for order, x in enumerate((*road, *others)):
         x.artist.set_zorder(order)
     moving = [x for x in (*road, *others) if x.moves]
@@ -98,60 +101,72 @@ def draw_film(file: DriveFile, library: Library) -> Film:
     return Film(size, frame, len(scene.times), grain, PAUSE, scene.still)
 
 
-def _at(values: Sequence[V], k: int) -> V:
-    """The value at an instant of a shape that moves, or the only one."""
+def _value_at(values: Sequence[V], k: int) -> V:
+    """Return the value at instant ``k``, or the only value of a shape that does not move."""
     return values[k] if len(values) > 1 else values[0]
 
 
-def _count(shape: Shape) -> int:
-    """How many states a shape has: one for each instant, or one."""
+def _state_count(shape: Shape) -> int:
+    """Return the number of states of a shape: one for each instant, or one."""
     match shape:
-        case Rectangle(boxes=values) | Line(ends=values) | Text(places=values) | Polygon(outlines=values):
+        case (
+            RectangleShape(boxes=values)
+            | LineShape(ends=values)
+            | TextShape(places=values)
+            | PolygonShape(outlines=values)
+        ):
             return len(values)
-        case Strokes():
+        case StrokesShape():
             return 1
 
 
-def _shifted(points: Points, shift: Shift, pivot: Point) -> list[Point]:
-    """Points moved and then turned clockwise as y grows downwards."""
+def _shifted(points: Points, shift: PavementShift, pivot: Point) -> list[Point]:
+    """Return points moved by a shift, then turned clockwise (y grows downwards)."""
     turned = math.radians(shift.turned)
     cos, sin = math.cos(turned), math.sin(turned)
     moved = ((x + shift.x - pivot[0], y + shift.y - pivot[1]) for x, y in points)
     return [(pivot[0] + x * cos - y * sin, pivot[1] + x * sin + y * cos) for x, y in moved]
 
 
-def _joined(lines: Sequence[Points]) -> tuple[list[float], list[float]]:
-    """The points of lines, with none between one and the next."""
+def _polyline_points(lines: Sequence[Points]) -> tuple[list[float], list[float]]:
+    """Return x and y of the points of lines, separated by NaN."""
     gap = (math.nan, math.nan)
     points = [point for line in lines for point in (*line, gap)]
     return [x for x, _ in points], [y for _, y in points]
 
 
 def _draw(axes: Any, shape: Shape) -> Any:
-    """The artist of a shape at the first instant."""
-    if isinstance(shape, Rectangle):
+    """Return a new artist for a shape at the first instant."""
+    if isinstance(shape, RectangleShape):
         return axes.fill(*_corners(shape.boxes[0]), color=shape.fill, alpha=shape.opacity, lw=0)[0]
-    if isinstance(shape, Polygon):
+    if isinstance(shape, PolygonShape):
         corners = zip(*shape.outlines[0], strict=True)
         return axes.fill(*corners, color=shape.fill, alpha=shape.opacity, lw=0)[0]
-    if isinstance(shape, Line | Strokes):
-        strokes = _strokes(shape.ends[0], shape.dash) if isinstance(shape, Line) else _joined(shape.lines)
+    if isinstance(shape, LineShape | StrokesShape):
+        strokes = (
+            _line_points(shape.ends[0], shape.dash)
+            if isinstance(shape, LineShape)
+            else _polyline_points(shape.lines)
+        )
         return axes.plot(*strokes, color=shape.stroke, lw=POINTS, solid_capstyle="butt")[0]
     look = {"fontsize": shape.size * POINTS * LETTERS, "color": shape.fill, "parse_math": False}
     return axes.text(*shape.places[0], shape.text, ha="center" if shape.middle else "left", **look)
 
 
 def _corners(box: Box, shift: float = 0.0) -> tuple[list[float], list[float]]:
-    """The corners of a box of left, top, width and height."""
+    """Return x and y of the corners of a box (left, top, width, height)."""
     left, top, width, height = box
     x, right, bottom = left + shift, left + shift + width, top + height
     return [x, right, right, x], [top, top, bottom, bottom]
 
 
-def _strokes(
+def _line_points(
     ends: Box, dash: tuple[float, float] | None, shift: float = 0.0
 ) -> tuple[list[float], list[float]]:
-    """The points of a line; between dashes there is none, since dashes of matplotlib do not move along."""
+    """Return x and y of the points of a line, with NaN between dashes.
+
+    The dashes of matplotlib itself do not move along with the line.
+    """
     x, x2, y, y2 = ends
     length = abs(x2 - x) + abs(y2 - y)  # a line is level or upright
     on, off = dash or (length, 0.0)
@@ -159,3 +174,21 @@ def _strokes(
     parts = [(k * (on + off) / length, min(1.0, (k * (on + off) + on) / length)) for k in steps]
     points = [part for begin, end in parts for part in (begin, end, float("nan"))]
     return [x + shift + (x2 - x) * p for p in points], [y + (y2 - y) * p for p in points]
+
+
+def draw_again(figure: Any, moving: Sequence[Any]) -> Callable[[], bytes]:
+    """A function that draws ``moving`` artists where they are then, above all others, as RGBA bytes."""
+    for artist in moving:
+        artist.set_animated(True)
+    canvas = figure.canvas
+    canvas.draw()
+    still = canvas.copy_from_bbox(figure.bbox)
+
+    def pixels() -> bytes:
+        """Return the pixels (RGBA) of the figure with the moving artists."""
+        canvas.restore_region(still)
+        for artist in moving:
+            figure.draw_artist(artist)
+        return bytes(canvas.buffer_rgba())
+
+    return pixels

@@ -1,4 +1,4 @@
-"""The options of commands that have no function of their own in Python."""
+"""The options of commands without a Python function."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from roadproof.runtime.records import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class Studio(Settings):
-    """Options of ``roadproof studio``."""
+    """The options of ``roadproof studio``."""
 
     port: int | None = option(None, "--port N", "default: 8642, or any that is free", read=int)
     browser: bool = option(True, "--no-browser", "print the address, and open nothing")

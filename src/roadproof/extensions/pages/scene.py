@@ -1,4 +1,4 @@
-"""What an animation of a drive shows: shapes in pixels at each instant, drawn as SVG and as frames.
+"""The content of an animation of a drive: shapes in px at each instant, to be drawn as SVG or as frames.
 
 The view follows SV. For each other vehicle an area around SV is shaded up to the RSS distances. It is red
 while the vehicle is in it; if that lasts for ``minDanger``, there is danger. Below the road stands a row for
@@ -32,8 +32,10 @@ STEPS, MOST_TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000), 12  # whole seco
 
 
 @dataclass(frozen=True)
-class Rectangle:
-    """Left, top, width and height at each instant, or once; ``red``: whether it is red, at each instant."""
+class RectangleShape:
+    """A rectangle (left, top, width, height) at each instant, or once; ``red``: whether it is red, at each
+    instant.
+    """
 
     boxes: Sequence[data.Box]
     fill: str
@@ -42,8 +44,8 @@ class Rectangle:
 
 
 @dataclass(frozen=True)
-class Line:
-    """Between two points (x, x, y, y) at each instant, or once; ``dash``: pixels of each dash and gap."""
+class LineShape:
+    """A line between two points (x, x, y, y) at each instant, or once; ``dash``: px of each dash and gap."""
 
     ends: Sequence[data.Box]
     stroke: str
@@ -51,8 +53,8 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Text:
-    """A text that begins at a point, or has its middle there; the points at each instant, or once."""
+class TextShape:
+    """A text that begins or is centred at a point; ``places``: the point at each instant, or once."""
 
     text: str
     places: Sequence[data.Span]
@@ -62,8 +64,10 @@ class Text:
 
 
 @dataclass(frozen=True)
-class Polygon:
-    """The corners in pixels at each instant, or once; ``red``: whether it is red, at each instant."""
+class PolygonShape:
+    """A polygon with its corners in px at each instant, or once; ``red``: whether it is red, at
+    each instant.
+    """
 
     outlines: Sequence[Points]
     fill: str
@@ -72,18 +76,20 @@ class Polygon:
 
 
 @dataclass(frozen=True)
-class Strokes:
-    """Lines through points in pixels, the same at all instants."""
+class StrokesShape:
+    """Lines through points in px, the same at all instants."""
 
     lines: Sequence[Points]
     stroke: str
 
 
-Shape: TypeAlias = Rectangle | Line | Text | Polygon | Strokes
+Shape: TypeAlias = RectangleShape | LineShape | TextShape | PolygonShape | StrokesShape
 
 
-class Shift(NamedTuple):
-    """Pixels to the right and down, and after that ``turned`` degrees clockwise about ``Pavement.pivot``."""
+class PavementShift(NamedTuple):
+    """A shift to the right and down in px, then a turn by ``turned`` degrees clockwise about
+    ``Pavement.pivot``.
+    """
 
     x: float
     y: float = 0.0
@@ -92,20 +98,20 @@ class Shift(NamedTuple):
 
 @dataclass(frozen=True)
 class Pavement:
-    """Lanes that move by ``shifts``, one for each instant, and are seen in ``window``."""
+    """Lanes that move by ``shifts``, one for each instant, and are visible in ``window``."""
 
     window: data.Box
     shapes: Sequence[Shape]
-    shifts: tuple[Shift, ...]
+    shifts: tuple[PavementShift, ...]
     pivot: Point | None = None
 
 
 @dataclass(frozen=True)
-class Scene:
-    """A drive that is shown, with what is computed of it once.
+class AnimationScene:
+    """A drive to be animated, with everything that is computed from it once.
 
-    ``width``, ``edge``, ``top``: pixels of the picture, its margin, and above the road; ``lane_pixels``: the
-    least for a metre across; ``grain``: seconds between instants.
+    ``width``, ``edge``, ``top``: px of the picture, its margin, and the space above the road;
+    ``lane_pixels``: the least px of a metre across; ``grain``: seconds between instants.
     """
 
     file: DriveFile
@@ -123,7 +129,7 @@ class Scene:
 
     @cached_property
     def states(self) -> dict[str, tuple[State, ...]]:
-        """The states of each vehicle at these instants, SV first."""
+        """The states of each vehicle at the instants, SV first."""
         return {
             name: states_at(self.file.drive.vehicles[name], self.times)
             for name in data.vehicles_of(self.file)
@@ -136,19 +142,19 @@ class Scene:
 
     @cached_property
     def window(self) -> data.Span:
-        """What is seen along the road, in m from SV's front."""
+        """The visible span along the road, in m from SV's front."""
         return data.window_of(self.file, self.times)
 
     @cached_property
     def scale(self) -> tuple[float, float]:
-        """Pixels for each metre along and across."""
+        """Pixels per metre along and across."""
         low, high = self.window
         along = (self.width - 2 * self.edge) / (high - low)
         return along, max(along, self.lane_pixels)
 
     @cached_property
     def across(self) -> data.Span:
-        """Right and left edge of the road, in m."""
+        """The right and left edge of the road, in m."""
         return data.road_in(self.file.road, self.states[self.subject][0].s, self.window).across
 
     @property
@@ -158,35 +164,39 @@ class Scene:
 
     @cached_property
     def dangers(self) -> dict[str, tuple[data.Span, ...]]:
-        """When the subject is in danger with each other vehicle, in s, where the library defines that."""
+        """The spans (s) of danger between the subject and each other vehicle, where the library defines
+        danger.
+        """
         others = [name for name in self.states if name != self.subject]
         spans = {name: data.danger_spans(self.file, self.library, self.subject, name) for name in others}
         return {name: x for name, x in spans.items() if x is not None}
 
     @cached_property
     def begins(self) -> float | None:
-        """When the first danger begins, in s."""
+        """The instant at which the first danger begins, in s."""
         return min((spans[0][0] for spans in self.dangers.values() if spans), default=None)
 
     @property
     def still(self) -> int:
-        """The instant that a viewer shows which does not play: the first in danger, else the first."""
+        """The number of the instant that a viewer without animation shows: the first in danger, else the
+        first.
+        """
         return next((k for k, time in enumerate(self.times) if float(time) >= (self.begins or 0)), 0)
 
     @property
-    def lasts(self) -> Fraction:
-        """A round of the picture, in s."""
+    def duration(self) -> Fraction:
+        """The duration of one loop of the picture, in s."""
         return self.times[-1] + PAUSE
 
     def pixels(self, box: data.Box) -> data.Box:
-        """Left, top, width and height of a box in m along, from SV's front, and across."""
+        """Return left, top, width and height in px of a box in m, along from SV's front and across."""
         left, right, bottom, top = box
         along, across = self.scale
         x, y = self.edge + (left - self.window[0]) * along, self.top + (self.across[1] - top) * across
         return x, y, (right - left) * along, (top - bottom) * across
 
     def box(self, name: str, k: int) -> data.Box:
-        """A vehicle at an instant, in m along from SV's front, and across."""
+        """Return a vehicle's box at instant ``k``, in m along from SV's front and across."""
         motion, state = self.file.drive.vehicles[name], self.states[name][k]
         s, d = float(state.s - self.states[self.subject][k].s), float(state.d)
         return s - float(motion.length), s, d - float(motion.width), d
@@ -198,64 +208,66 @@ class Scene:
 
     @cached_property
     def travel(self) -> list[float]:
-        """How far the subject has come at each instant, in m."""
+        """The distance that the subject has covered at each instant, in m."""
         states = self.states[self.subject]
         return [float(state.s - states[0].s) for state in states]
 
     @cached_property
     def road(self) -> data.ShownRoad:
-        """What of the road is seen, in m along from the front of the subject at the start, and across."""
+        """The visible part of the road, in m along from the subject's front at the start, and across."""
         low, high = self.window
         seen = low + min(self.travel), high + max(self.travel)
         return data.road_in(self.file.road, self.states[self.subject][0].s, seen)
 
     @cached_property
     def distances(self) -> tuple[data.Distance, ...]:
-        """Those of the subject from each other vehicle along the road."""
+        """The distances from the subject to each other vehicle along the road."""
         return data.distances_of(self.file, self.library, "along", self.grain)
 
     @cached_property
-    def envelopes(self) -> list["Envelope"]:
-        """For each other vehicle, the area within RSS distances of the subject."""
+    def envelopes(self) -> "list[Envelope]":
+        """The area within RSS distances of the subject, for each other vehicle."""
         across = {x.other: x for x in data.distances_of(self.file, self.library, "across", self.grain)}
-        found = []
+        envelopes = []
         for along in self.distances:
             beside = across.get(along.other)
             if beside is not None:
-                boxes = [_around(self.box(self.subject, k), along, beside, k) for k in self.instants]
+                boxes = [_envelope_box(self.box(self.subject, k), along, beside, k) for k in self.instants]
                 near = [
                     along.gap[k] <= along.needed[k] and beside.gap[k] <= beside.needed[k]
                     for k in self.instants
                 ]
-                found.append(Envelope(along.other, boxes, near))
-        return found
+                envelopes.append(Envelope(along.other, boxes, near))
+        return envelopes
 
     def pavement(self) -> Pavement:
-        """The lanes, which move to the left as SV goes on."""
+        """Return the lanes, which move to the left as SV drives on."""
         _, top, _, height = window = self.pixels((*self.window, *self.across))
         dash = (DASH[0] * self.scale[0], DASH[1] * self.scale[0])
-        shapes: list[Rectangle | Line] = []
+        shapes: list[RectangleShape | LineShape] = []
         for zone, along, (right, beyond) in self.road.pieces:
             x, y, wide, high_ = box = self.pixels((*along, right, beyond))
-            shapes.append(Rectangle([box], SHADES[zone]))
+            shapes.append(RectangleShape([box], SHADES[zone]))
             for edge in (y, y + high_):
                 inner = top + 1 < edge < top + height - 1
-                shapes.append(Line([(x, x + wide, edge, edge)], "#888888", dash if inner else None))
-        return Pavement(window, tuple(shapes), tuple(Shift(-x * self.scale[0]) for x in self.travel))
+                shapes.append(LineShape([(x, x + wide, edge, edge)], "#888888", dash if inner else None))
+        return Pavement(window, tuple(shapes), tuple(PavementShift(-x * self.scale[0]) for x in self.travel))
 
     def areas(self) -> Iterator[Shape]:
-        """The area within RSS distances of SV, for each other vehicle; red while that vehicle is in it."""
+        """Yield the area within RSS distances of SV, for each other vehicle; red while that
+        vehicle is in it.
+        """
         for x in self.envelopes:
-            yield Rectangle([*map(self.pixels, x.boxes)], self.colours[x.other], 0.2, x.near)
+            yield RectangleShape([*map(self.pixels, x.boxes)], self.colours[x.other], 0.2, x.near)
 
     def vehicles(self) -> Iterator[Shape]:
-        """The boxes, each with its name inside, or above where it is too short for that."""
+        """Yield the vehicles, each with its name inside, or above where it does not fit."""
         for name, colour in self.colours.items():
             boxes = [self.pixels(self.box(name, k)) for k in self.instants]
-            yield Rectangle(boxes, colour)
+            yield RectangleShape(boxes, colour)
             fits = boxes[0][2] >= 9 * len(name)
             places = [(x + w / 2, y + h / 2 + (4 if fits else -8)) for x, y, w, h in boxes]
-            yield Text(name, places, "white" if fits else colour, size=11, middle=True)
+            yield TextShape(name, places, "white" if fits else colour, size=11, middle=True)
 
     @cached_property
     def strips(self) -> list[data.Strip]:
@@ -266,24 +278,25 @@ class Scene:
 
     @property
     def road_height(self) -> float:
-        """Pixels from the upper to the lower edge of the road."""
+        """The height of the road in px."""
         return (self.across[1] - self.across[0]) * self.scale[1]
 
     @property
     def rows_begin(self) -> float:
-        """Where the rows begin, below the road."""
+        """The y at which the rows below the road begin, in px."""
         return self.top + self.road_height + 2 * ROW
 
     @property
     def height(self) -> float:
-        """Pixels from top to bottom."""
+        """The height of the picture in px."""
         return self.rows_begin + ROW * (len(self.strips) + len(self.dangers) + 1) + EDGE
 
 
 @dataclass(frozen=True)
 class Envelope:
-    """Where ``other`` is too near to the subject at each instant, in m as ``Scene.box`` is, and whether it
-    is ``near``.
+    """The area in which ``other`` is too near to the subject, at each instant (m, as ``AnimationScene.box``).
+
+    ``near``: whether the other vehicle is in it.
     """
 
     other: str
@@ -291,25 +304,25 @@ class Envelope:
     near: Sequence[bool]
 
 
-def headings(scene: Scene) -> Iterator[Text]:
-    """The title, which is the scenario in words or the formula, and a legend."""
-    yield Text(data.heading_of(scene.file, scene.library)[0], [(EDGE, 20)], size=14)
-    told = [f"the view follows {scene.subject}"]
+def headings(scene: AnimationScene) -> Iterator[TextShape]:
+    """Yield the title, which is the scenario in words or the formula, and a legend."""
+    yield TextShape(data.heading_of(scene.file, scene.library)[0], [(EDGE, 20)], size=14)
+    notes = [f"the view follows {scene.subject}"]
     if len(scene.states) > 1:
-        told.append("shaded: within RSS distances, red if violated")
+        notes.append("shaded: within RSS distances, red if violated")
     if scene.begins is not None:
-        told.append(f"danger begins at {scene.begins:.1f} s")
-    yield Text("; ".join(told), [(EDGE, 37)], "#555555")
+        notes.append(f"danger begins at {scene.begins:.1f} s")
+    yield TextShape("; ".join(notes), [(EDGE, 37)], "#555555")
     error = length_error_of(scene.file.road)
     if error is not None:
-        said = f"lengths differ by up to {float(100 * error.share):.2g} %, {float(error.metres):.2g} m"
-        yield Text(said, [(EDGE, scene.rows_begin - 11)], "#555555", size=10)
+        length_note = f"lengths differ by up to {float(100 * error.share):.2g} %, {float(error.metres):.2g} m"
+        yield TextShape(length_note, [(EDGE, scene.rows_begin - 11)], "#555555", size=10)
 
 
-def _around(box: data.Box, along: data.Distance, across: data.Distance, k: int) -> data.Box:
-    """Where the other vehicle would be too near: from the box of SV as far as the RSS distances reach.
+def _envelope_box(box: data.Box, along: data.Distance, across: data.Distance, k: int) -> data.Box:
+    """Return the box in which the other vehicle would be too near: SV's box, extended by the RSS distances.
 
-    Where a distance is negative, as that of a faster vehicle ahead can be, it reaches less far than the box.
+    A negative distance, as to a faster vehicle ahead, makes it smaller than SV's box.
     """
     left, right, bottom, top = box
     if along.one_behind[k]:
@@ -323,29 +336,29 @@ def _around(box: data.Box, along: data.Distance, across: data.Distance, k: int) 
     return left, max(left, right), bottom, max(bottom, top)
 
 
-def rows(scene: Scene) -> Iterator[Shape]:
-    """A row for each part and for danger, an axis of time, and a line that goes through all of them."""
-    told = [(x.depth, x.name, x.spans, TRUE) for x in scene.strips]
+def timeline_rows(scene: AnimationScene) -> Iterator[Shape]:
+    """Yield a row for each part and for danger, an axis of time, and a line at the present instant."""
+    entries = [(x.depth, x.name, x.spans, TRUE) for x in scene.strips]
     for other, spans in scene.dangers.items():
-        told.append((0, f"danger between {scene.subject} and {other}", spans, DANGER))
+        entries.append((0, f"danger between {scene.subject} and {other}", spans, DANGER))
     top = scene.rows_begin
-    bottom = top + ROW * len(told)
+    bottom = top + ROW * len(entries)
     begin, end = EDGE + NAMES, WIDTH - EDGE
     pixels = (end - begin) / float(scene.file.horizon)
-    for row, (depth, name, spans, colour) in enumerate(told):
+    for row, (depth, name, spans, colour) in enumerate(entries):
         y = top + ROW * row
-        yield Text(excerpt("\u2002" * depth + name, LONGEST), [(EDGE, y + 12)], "#333333", size=11)
-        yield Line([(begin, end, y + 8, y + 8)], "#dddddd")
+        yield TextShape(excerpt("\u2002" * depth + name, LONGEST), [(EDGE, y + 12)], "#333333", size=11)
+        yield LineShape([(begin, end, y + 8, y + 8)], "#dddddd")
         for since, until in spans:
             x, width = begin + since * pixels, max(1.5, (until - since) * pixels)
-            yield Rectangle([(x, y + 3, width, 10)], colour)
+            yield RectangleShape([(x, y + 3, width, 10)], colour)
     step = next((x for x in STEPS if scene.file.horizon <= MOST_TICKS * x), STEPS[-1])
     for second in range(0, int(scene.file.horizon) + 1, step):
         place = (begin + second * pixels, bottom + 14)
-        yield Text(f"{second} s", [place], "#555555", size=10, middle=True)
+        yield TextShape(f"{second} s", [place], "#555555", size=10, middle=True)
     if scene.begins is not None:
         x = begin + scene.begins * pixels
-        yield Line([(x, x, top - 8, bottom)], DANGER, (4, 2))
-        yield Text("danger begins", [(x, top - 11)], DANGER, size=11, middle=True)
+        yield LineShape([(x, x, top - 8, bottom)], DANGER, (4, 2))
+        yield TextShape("danger begins", [(x, top - 11)], DANGER, size=11, middle=True)
     places = [begin + float(time) * pixels for time in scene.times]
-    yield Line([(x, x, top - 4, bottom) for x in places], "#222222")
+    yield LineShape([(x, x, top - 4, bottom) for x in places], "#222222")

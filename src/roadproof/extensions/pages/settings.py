@@ -1,4 +1,4 @@
-"""The options of pages, atlas and studio."""
+"""The options of the commands for pages and the atlas."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Atlas(groups.Readings, groups.Run):
-    """Options of ``atlas``."""
+class AtlasSettings(groups.Readings, groups.Run):
+    """The options of ``atlas``."""
 
     among: Among = groups.scenarios_such_as("1-8", keyword=True)
     topics: Sequence[str] = option(
@@ -33,8 +33,8 @@ class Atlas(groups.Readings, groups.Run):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Page(groups.Workers):
-    """Options of ``report``, which is ``page`` in Python."""
+class PageSettings(groups.Workers):
+    """The options of ``report``, called ``page`` in Python."""
 
     title: str | None = output(None, "--title TEXT", "title of the page")
     solver: Solver = groups.checker_of("solver that checks certificates")

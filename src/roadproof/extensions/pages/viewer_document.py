@@ -1,19 +1,21 @@
-"""The document that the viewer in a browser reads: a drive or a recorded trace, and formulas on it."""
+"""The document that the drive viewer reads: a drive or a recorded trace, and formulas on it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import is_dataclass
 from typing import NamedTuple
 
+from roadproof.extensions.pages.places import FormulaPlace
 from roadproof.frontends.report.drive_data import Danger
-from roadproof.library.uses import Place
 from roadproof.runtime.records import dataclass
 from roadproof.world.road import Zone
 
 SCHEMA = "roadproof/viewer/1"
 
 
-class Span(NamedTuple):
-    """From when to when (s) something is true, without end where ``end`` is None; which ends belong to it."""
+class TruthSpan(NamedTuple):
+    """A span of time (s) in which something is true, without end where ``end`` is None; which ends belong to
+    it.
+    """
 
     begin: float
     end: float | None
@@ -23,16 +25,16 @@ class Span(NamedTuple):
 
 @dataclass(frozen=True)
 class PartView:
-    """A part of a formula with when it is ``true``; ``open``: when that depends on what comes later.
+    """A part of a formula; ``true``: when it is true; ``open``: when that depends on later samples.
 
-    ``op``: name, and, or, not, F, G, U, compare, truth or part; ``children``: places in the list of parts.
+    ``op``: name, and, or, not, F, G, U, compare, truth or part; ``children``: indices in the list of parts.
     """
 
     op: str
     text: str
     children: Sequence[int]
-    true: Sequence[Span]
-    open: Sequence[Span] | None = None
+    true: Sequence[TruthSpan]
+    open: Sequence[TruthSpan] | None = None
     exact: str = ""
     says: str | None = None
     words: str | None = None
@@ -41,10 +43,10 @@ class PartView:
 
 @dataclass(frozen=True)
 class FormulaView:
-    """A formula with its parts, or with an ``error`` in place of all else.
+    """A formula with its parts, or with an ``error`` instead of everything else.
 
-    ``more``: how many parts were left out; ``step``: seconds between margins; ``because``: by the places of
-    parts, when they make one part what it is at an instant; ``said``: where in texts.
+    ``more``: the number of parts left out; ``step``: seconds between margins; ``because``: when each part, by
+    its index, makes an explained part true or false; ``said``: the places of these parts in texts.
     """
 
     role: str
@@ -58,8 +60,8 @@ class FormulaView:
     parts: Sequence[PartView] | None = None
     more: int | None = None
     step: float | None = None
-    because: Mapping[str, Sequence[Span]] | None = None
-    said: Sequence[Place] | None = None
+    because: Mapping[str, Sequence[TruthSpan]] | None = None
+    said: Sequence[FormulaPlace] | None = None
 
 
 @dataclass(frozen=True)
@@ -73,15 +75,15 @@ class LaneletView:
 
 
 class LengthErrorView(NamedTuple):
-    """By how much lengths in lanes differ at most from those in s: at one place, and on a whole lane."""
+    """The largest difference of lengths in lanes from those in s: at one place, and on a whole lane."""
 
     per_cent: float
     metres: float
 
 
 @dataclass(frozen=True)
-class RoadView:
-    """A road; of one with bends the ``line`` along which s is measured, and what that does to lengths.
+class ViewerRoad:
+    """A road; for one with bends also its reference ``line``, and the ``error`` of lengths.
 
     ``line``: s, x, y and heading (m, rad) at places some metres apart; ``error``: in per cent and metres.
     """
@@ -94,7 +96,9 @@ class RoadView:
 
 @dataclass(frozen=True)
 class VehicleView:
-    """``knots``: time, place, speed, acceleration and jerk, along and across, where these change (SI)."""
+    """A vehicle; ``knots``: time, place, speed, acceleration and jerk, along and across, where these change
+    (SI).
+    """
 
     length: float
     width: float
@@ -103,7 +107,9 @@ class VehicleView:
 
 @dataclass(frozen=True)
 class DistanceView:
-    """``gap`` and RSS distance ``needed`` (m) at each sample; ``one_behind``: who is behind, or right."""
+    """The ``gap`` and RSS distance ``needed`` (m) at each sample; ``one_behind``: whether ``one`` is behind,
+    or right.
+    """
 
     direction: str
     one: str
@@ -115,21 +121,21 @@ class DistanceView:
 
 @dataclass(frozen=True)
 class DriveView:
-    """Road, vehicles by name, and distances every ``grain`` s up to the ``horizon``."""
+    """The road, vehicles by name, and distances every ``grain`` s up to the ``horizon``."""
 
     set: str
     horizon: float
     grain: float
     lanes: Mapping[str, str]
-    road: RoadView
+    road: ViewerRoad
     vehicles: Mapping[str, VehicleView]
     distances: Sequence[DistanceView]
     dangers: Sequence[Danger] = ()
 
 
 @dataclass(frozen=True)
-class Document:
-    """All of it; ``file``: the drive file as plain data, None of a recorded trace."""
+class ViewerDocument:
+    """The whole document; ``file``: the drive file as plain data, None for a recorded trace."""
 
     title: str
     drive: DriveView
@@ -137,20 +143,20 @@ class Document:
     formulas: Sequence[FormulaView]
 
     def as_json(self) -> dict[str, object]:
-        """Plain data; what is None is left out of formulas and parts."""
+        """Return plain data; fields that are None are left out of formulas and parts."""
         head = {"schema": SCHEMA, "title": self.title, "verdict": {}, "drive": _plain(self.drive)}
         return {**head, "file": self.file, "formulas": _plain(self.formulas)}
 
 
 def _plain(value: object) -> object:
     match value:
-        case Place(source=source, at=at):
+        case FormulaPlace(source=source, at=at):
             return {"source": source, "from": [at.line, at.column], "to": [at.end_line, at.end_column]}
         case Mapping():
             return {name: _plain(x) for name, x in value.items()}
         case list() | tuple():
             return [_plain(x) for x in value]
-        case _ if is_dataclass(value):
+        case _ if is_dataclass(value):  # open: any data class of this module
             return {name: _plain(x) for name, x in vars(value).items() if x is not None}
-        case _:
+        case _:  # open: plain JSON values
             return value

@@ -1,4 +1,4 @@
-"""The viewer with its documents as one file that needs no server and asks nobody for anything."""
+"""Writes the drive viewer with its documents as one HTML file, which needs no server and no network."""
 
 import base64
 import hashlib
@@ -13,31 +13,31 @@ _OWN = ("palette", "terms", "drive", "plane", "scene", "strips", "curves", "verd
 _MODULES = ("vendor/view", *(f"viewer/{name}" for name in _OWN))
 
 
-def folder() -> Traversable:
-    """Where they lie."""
+def viewer_folder() -> Traversable:
+    """Return the folder of the viewer's files."""
     return resources.files("roadproof.extensions.pages").joinpath("viewer")
 
 
 @cache
 def viewer_modules() -> dict[str, str]:
-    """The text of each ES module, by the name under which the others import it."""
+    """Return the text of each ES module, by the name under which the others import it."""
     return {name: _text(f"{name.removeprefix('viewer/')}.js") for name in _MODULES}
 
 
 @cache
 def design() -> str:
-    """Fonts, colours and badges of every page, light or dark as the system or ``data-theme`` says."""
+    """Return fonts, colours and badges of every page; light or dark follows the system or ``data-theme``."""
     return _text("design.css")
 
 
 @cache
 def viewer_style() -> str:
-    """All styles of the viewer."""
+    """Return all styles of the viewer."""
     return "\n".join((_text("vendor/uPlot.css"), design(), _text("viewer.css")))
 
 
 def _text(path: str) -> str:
-    return folder().joinpath(path).read_text("utf-8")
+    return viewer_folder().joinpath(path).read_text("utf-8")
 
 
 _PAGE = """\
@@ -73,7 +73,7 @@ documents.forEach((x, k) => mount(document.getElementById("document-" + k), x));
 
 
 def viewer_page(documents: Sequence[Mapping[str, object]], title: str) -> str:
-    """An HTML page with a viewer for each document of ``viewer_data``; all texts are escaped."""
+    """Return an HTML page with a viewer for each document of ``viewer_data``; all texts are escaped."""
     imports = json.dumps({"imports": {name: as_url(text) for name, text in viewer_modules().items()}})
     articles = "\n".join(f'<article id="document-{k}"></article>' for k in range(len(documents)))
     hashes = " ".join(hash_of(x) for x in (imports, _SCRIPT))
@@ -89,7 +89,9 @@ def viewer_page(documents: Sequence[Mapping[str, object]], title: str) -> str:
 
 
 def json_in_html(data: object) -> str:
-    """Plain data as JSON that no browser takes for the end of a script, whatever its texts say."""
+    """Return plain data as JSON that a browser never takes for the end of a script, whatever its texts
+    contain.
+    """
     text = json.dumps(data, ensure_ascii=False)
     for sign in "<>&\u2028\u2029":
         text = text.replace(sign, f"\\u{ord(sign):04x}")
@@ -97,9 +99,10 @@ def json_in_html(data: object) -> str:
 
 
 def as_url(text: str) -> str:
+    """Return a script as a data URL."""
     return "data:text/javascript;base64," + base64.b64encode(text.encode()).decode()
 
 
 def hash_of(script: str) -> str:
-    """What a policy calls a script that it lets run."""
+    """Return the hash by which a content security policy allows a script."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"

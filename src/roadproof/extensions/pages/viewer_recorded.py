@@ -1,4 +1,4 @@
-"""What the viewer shows of a recorded trace: samples as they are, and formulas as the monitor has them."""
+"""Builds the document of the drive viewer for a recorded trace: samples, and formulas as monitored."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -6,8 +6,8 @@ from typing import Any
 
 from roadproof.errors import RoadproofError
 from roadproof.extensions.pages import viewer_document as document
-from roadproof.extensions.pages.viewer_data import short_number, shown_road
-from roadproof.extensions.traffic.evaluate.observed import FirstAnswer, Strip, margins_of
+from roadproof.extensions.pages.viewer_data import road_view, short_number
+from roadproof.extensions.traffic.evaluate.observed import MonitorResult, TruthStrip, margins_of
 from roadproof.extensions.traffic.evaluate.one_trace import OneTrace
 from roadproof.frontends.report.drive_data import Direction, nearer_in, too_near
 from roadproof.library.bind import bind
@@ -20,14 +20,14 @@ _DIRECTIONS: tuple[Direction, ...] = ("along", "across")
 
 def recorded_data(
     trace: OneTrace,
-    observed: Sequence[tuple[str, FirstAnswer]],
+    observed: Sequence[tuple[str, MonitorResult]],
     home: Specification,
     values: Mapping[str, Fraction],
-) -> document.Document:
-    """The document for a trace; ``observed`` are roles and what the monitor said of each formula.
+) -> document.ViewerDocument:
+    """Return the document for a trace; ``observed``: pairs of a role and the monitor's answer on a formula.
 
-    Between samples vehicles are drawn as if they kept their speed. ``values`` of parameters, with the
-    definitions of ``home``, say how far the RSS distances are; of danger nothing is told beside the strips.
+    Between samples vehicles are drawn as if they kept their speed. The definitions of ``home`` and the
+    parameter ``values`` give the RSS distances; danger appears only in the strips.
     """
     batch = trace.batch
     count = int(batch.lengths[0])
@@ -39,33 +39,33 @@ def recorded_data(
         (count - 1) * dt,
         dt,
         trace.lanes,
-        shown_road(trace.road, (min(places), max(places))),
-        {name: _shown_vehicle(trace, name, count, dt) for name in names},
+        road_view(trace.road, (min(places), max(places))),
+        {name: _vehicle_view(trace, name, count, dt) for name in names},
         [
             shown
             for direction in _DIRECTIONS
             for other in names[1:]
-            if (shown := _shown_distance(trace, home, values, direction, names[0], other)) is not None
+            if (shown := _distance_view(trace, home, values, direction, names[0], other)) is not None
         ],
     )
-    return document.Document(
-        trace.source, drive, None, [_shown_formula(role, x, home.set_name) for role, x in observed]
+    return document.ViewerDocument(
+        trace.source, drive, None, [_formula_view(role, x, home.set_name) for role, x in observed]
     )
 
 
-def _shown_vehicle(trace: OneTrace, name: str, count: int, dt: float) -> document.VehicleView:
+def _vehicle_view(trace: OneTrace, name: str, count: int, dt: float) -> document.VehicleView:
     batch = trace.batch
 
     def column(signal: Any) -> list[float]:
         return [round(float(x), 4) for x in batch.signals[signal, name][:count, 0]]
 
-    columns = [column(x) for x, about in SIGNALS.items() if about.kept == "start"]
+    columns = [column(x) for x, about in SIGNALS.items() if about.stored == "start"]
     knots = [[round(k * dt, 6), *row, 0.0, 0.0, 0.0] for k, row in enumerate(zip(*columns, strict=True))]
     length, width = (float(batch.sizes[x, name][0]) for x in ("length", "width"))
     return document.VehicleView(length, width, knots)
 
 
-def _shown_distance(
+def _distance_view(
     trace: OneTrace,
     home: Specification,
     values: Mapping[str, Fraction],
@@ -73,7 +73,7 @@ def _shown_distance(
     one: str,
     other: str,
 ) -> document.DistanceView | None:
-    """Gap and RSS distance at each sample; None where the library has none, or of another form."""
+    """Return gap and RSS distance at each sample; None where the library defines no distance of this form."""
     batch, count = trace.batch, int(trace.batch.lengths[0])
     signal = "s" if direction == "along" else "d"
     size: SizeName = "length" if direction == "along" else "width"
@@ -100,7 +100,7 @@ def _shown_distance(
     return document.DistanceView(direction, one, other, gaps, needed, behind)
 
 
-def _shown_formula(role: str, observed: FirstAnswer, set_name: str) -> document.FormulaView:
+def _formula_view(role: str, observed: MonitorResult, set_name: str) -> document.FormulaView:
     return document.FormulaView(
         role,
         observed.formula,
@@ -109,29 +109,29 @@ def _shown_formula(role: str, observed: FirstAnswer, set_name: str) -> document.
         sentence="",
         holds=observed.verdict == "true",
         undecided=observed.verdict == "undecided",
-        parts=[_shown_part(observed.strips, k) for k in range(len(observed.strips))],
+        parts=[_part_view(observed.strips, k) for k in range(len(observed.strips))],
         more=0,
         step=float(observed.dt),
     )
 
 
-def _shown_part(strips: Sequence[Strip], place: int) -> document.PartView:
-    """A strip as a part whose children are the strips one deeper that follow it."""
-    one = strips[place]
+def _part_view(strips: Sequence[TruthStrip], place: int) -> document.PartView:
+    """Return a strip as a part whose children are the strips one level deeper that follow it."""
+    strip = strips[place]
     children = []
     for k in range(place + 1, len(strips)):
-        if strips[k].depth <= one.depth:
+        if strips[k].depth <= strip.depth:
             break
-        if strips[k].depth == one.depth + 1:
+        if strips[k].depth == strip.depth + 1:
             children.append(k)
-    told = "; ".join(f"{begin:g} to {end:g} s" for begin, end in one.true) or "at no sample"
-    margins = [None if x is None else short_number(x) for x in one.margins]
+    exact = "; ".join(f"{begin:g} to {end:g} s" for begin, end in strip.true) or "at no sample"
+    margins = [None if x is None else short_number(x) for x in strip.margins]
     return document.PartView(
         "part",
-        one.name,
+        strip.name,
         children,
-        [document.Span(*x) for x in one.true],
-        [document.Span(*x) for x in one.undecided],
-        told,
+        [document.TruthSpan(*x) for x in strip.true],
+        [document.TruthSpan(*x) for x in strip.undecided],
+        exact,
         margins=margins if any(x is not None for x in margins) else None,
     )

@@ -5,6 +5,7 @@ from roadproof.extension import Extension
 EXTENSION = Extension(
     title="Surveys of sets of scenarios: redundancy, gaps, classes, limits",
     audience="researchers",
+    page="docs/how-to/surveys.md",
     needs=("traffic",),
     functions={
         "redundancy": "redundancies:redundancy",
@@ -25,5 +26,6 @@ EXTENSION = Extension(
         "explore": "exploring:Explorations",
         "redundancy": "redundancies:Redundancies",
     },
+    pictures={"order": "report.order_picture:draw_answer", "overlap": "report.overlap_picture:draw_answer"},
     schemas=("schemas:TITLES",),
 )

@@ -1,41 +1,41 @@
-"""Which disturbances a spec set misses: proofs that it misses none, or its gaps in classes."""
+"""``roadproof.coverage``: the gaps of a spec set in classes, or proofs that it has none."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import closing
 from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import ClassVar, Unpack
 
-from roadproof.engines.modifier import modifier_of
+from roadproof.engines.modifier import find_modifier
 from roadproof.errors import UsageError
 from roadproof.evidence.codec import write
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
 from roadproof.extensions.surveys import settings
-from roadproof.extensions.surveys.coverage.answers import ClassAnswer, GapTraffic, Survey, with_traffic
+from roadproof.extensions.surveys.coverage.answers import ClassAnswer, GapSurvey, GapTraffic, with_traffic
 from roadproof.extensions.surveys.coverage.cases import coverage_cases
 from roadproof.extensions.surveys.coverage.classes import sets_between
 from roadproof.extensions.surveys.coverage.data import CoverageData
-from roadproof.extensions.surveys.coverage.kept import Claim, CountedClass
 from roadproof.extensions.surveys.coverage.question import CoverageQuestion, CoverageView, gaps_of
+from roadproof.extensions.surveys.coverage.schema import CountedClass, CoverageClaimData
 from roadproof.extensions.surveys.coverage.traffic import count_in_traffic, recordings_in
 from roadproof.extensions.surveys.keywords import CoverageKeywords
 from roadproof.extensions.surveys.report import coverage as report
-from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, definitions_of
-from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.pictures import Picture, picture
+from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.api.settings import as_road, basis_of
 from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.option import takes
-from roadproof.library.words import Called, called
+from roadproof.library.words import ScenarioWords, words_by_number
 from roadproof.questions.views import placing
 from roadproof.runtime import pool
-from roadproof.runtime.executors import Jobs, hands_of
-from roadproof.runtime.files import hold_folder
+from roadproof.runtime.executors import Jobs, executor_for
+from roadproof.runtime.files import lock_folder
 from roadproof.runtime.pool import Progress, Say
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
@@ -43,7 +43,7 @@ from roadproof.world.road import Road
 
 ROADS, ELSEWHERE = ("main-2", "main-3"), ("main-3", "merge", "depart")
 COMPLETE = "complete"
-CODES = {
+CODES: Mapping[Verdict, ExitCode] = {  # partial: coverage has no other verdicts
     Verdict.COVERED: ExitCode.AS_EXPECTED,
     Verdict.GAPS: ExitCode.UNEXPECTED,
     Verdict.UNKNOWN: ExitCode.UNKNOWN,
@@ -53,7 +53,7 @@ CODES = {
 
 @dataclass(frozen=True, repr=False)
 class Coverages(QuestionAnswers[CoverageView], BuildResult):
-    """What a spec set misses; ``traffic``: how often each class of gaps occurs in recordings, if asked."""
+    """The gaps of a spec set; ``traffic``: counts of each class of gaps in recordings, with ``on``."""
 
     question: CoverageQuestion
     traffic: GapTraffic | None = None
@@ -62,40 +62,38 @@ class Coverages(QuestionAnswers[CoverageView], BuildResult):
 
     @cached_property
     def view(self) -> CoverageView:
-        found = self.question.view(self.found.answers)
-        return (
-            found if self.traffic is None else replace(found, survey=with_traffic(found.survey, self.traffic))
-        )
+        view = self.question.view(self.found.answers)
+        return view if self.traffic is None else replace(view, survey=with_traffic(view.survey, self.traffic))
 
     @property
-    def surveyed(self) -> Survey:
+    def surveyed(self) -> GapSurvey:
         """Claims that there is no gap, the classes of gaps, and the definitions that are needed."""
         return self.view.survey
 
     @cached_property
-    def words(self) -> Called:
-        """What the scenarios are called."""
-        return called(self.question.basis.specification)
+    def words(self) -> ScenarioWords:
+        """The titles of the scenarios."""
+        return words_by_number(self.question.basis.specification)
 
     @property
     def verdict(self) -> Verdict:
-        """COVERED, GAPS, UNKNOWN, or CROSSCHECK-FAILED where traffic shows what is proved not to be."""
+        """COVERED, GAPS, UNKNOWN, or CROSSCHECK-FAILED if traffic contradicts a proof."""
         return self.surveyed.verdict
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
-        """Of each claim, each class of gaps, and each definition that may be needed."""
-        found: dict[str, Verdict] = {x.claim.text: x.verdict for x in self.surveyed.claims}
-        found |= {_name(x): x.verdict for x in self.surveyed.classes}
-        return found | {f"{x.definition} is needed": x.verdict for x in self.surveyed.needs}
+        """The verdicts on claims, classes of gaps, and definitions that may be needed."""
+        verdicts: dict[str, Verdict] = {x.claim.text: x.verdict for x in self.surveyed.claims}
+        verdicts |= {_name(x): x.verdict for x in self.surveyed.classes}
+        return verdicts | {f"{x.definition} is needed": x.verdict for x in self.surveyed.needs}
 
     @property
     def evidence(self) -> tuple[Evidence, ...]:
-        found: list[Evidence | None] = [x.certificate for x in self.surveyed.claims]
+        evidence: list[Evidence | None] = [x.certificate for x in self.surveyed.claims]
         for one in self.surveyed.classes:
-            found += [one.certificate, *(gap.drive for gap in one.gaps)]
-        found += [x.drive for x in self.surveyed.needs]
-        return tuple(x for x in found if x is not None)
+            evidence += [one.certificate, *(gap.drive for gap in one.gaps)]
+        evidence += [x.drive for x in self.surveyed.needs]
+        return tuple(x for x in evidence if x is not None)
 
     @property
     def roads(self) -> tuple[Road, ...]:
@@ -120,19 +118,19 @@ class Coverages(QuestionAnswers[CoverageView], BuildResult):
         return coverage_cases(self.surveyed, self.question.basis.specification, files)
 
     @property
-    def _sheet(self) -> Sheet[CountedClass] | Sheet[Claim]:
-        """An entry for each class of gaps, and where there is none, for each claim that shows so."""
+    def _sheet(self) -> Sheet[CountedClass] | Sheet[CoverageClaimData]:
+        """An entry for each class of gaps; without gaps, for each claim of coverage."""
         data = self._data()
         names = {number: x.name for number, x in self.words.items()}
         return report.sheet_of(data, names) if data.classes else report.sheet_of_claims(data)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
-        """A picture of each gap."""
+        """Yield a picture of each gap."""
         gaps = ((x, gap) for x in self.surveyed.classes for gap in x.gaps)
         return ((f"gap-{k}", picture(report.draw_gap(*one, self.library))) for k, one in enumerate(gaps, 1))
 
     def draw_beside(self, jobs: Jobs = None, progress: Progress | None = None) -> None:
-        """A picture of each gap beside its file, where answers were kept in a folder."""
+        """Draw each gap beside its file, if answers are in a folder."""
         if self.folder is None:
             return
         pairs = [
@@ -158,21 +156,20 @@ def _name(answer: ClassAnswer) -> str:
 def coverage(
     using: Definitions | None = None, *, tell: Say | None = None, **options: Unpack[CoverageKeywords]
 ) -> Coverages:
-    """Which disturbances between two vehicles the spec set of ``using`` misses, in classes.
+    """Find the disturbances between two vehicles that the spec set of ``using`` misses, in classes.
 
-    ``wider``: the set that catches all (complete, where it extends the set); ``roads``: where drives are
-    looked for; ``needed``: of a set that covers, also a drive for each definition that it needs. ``on``:
-    recordings in which the classes are counted; ``strict``: no file of which vehicles or parts would be
-    left out; ``tell`` is told how far that is. ``preventable``,
-    ``unpreventable``: the name of a driver model, for drives that begin with a manoeuvre whose collision it
-    prevents, or cannot prevent. ``out``: a folder in which
-    answers are kept as they come. Raises ``InputError``, ``UsageError``.
+    ``wider``: the set that catches all (complete, if it extends the set); ``roads``: where drives are
+    searched; ``needed``: for a set without gaps, also find a drive for each definition that it needs. ``on``:
+    recordings in which to count the classes; ``strict``: refuse files of which vehicles or parts would be
+    left out; ``tell`` is called with the progress of counting. ``preventable``, ``unpreventable``: the name
+    of a driver model, for drives that begin with a manoeuvre whose collision it prevents, or cannot prevent.
+    ``out``: a folder for answers, which are written as they come. Raises ``InputError``, ``UsageError``.
     """
-    begun = time.monotonic()
+    started = time.monotonic()
     given = settings.Coverage.of(options)
     wider = given.wider
     home = given.modified(definitions_of(using))
-    modifier = modifier_of(home.specification.options)
+    modifier = find_modifier(home.specification.options)
     if modifier is not None:
         modifier.check_drives()
     basis = basis_of(home, given, given.vehicles)
@@ -184,13 +181,13 @@ def coverage(
         raise UsageError(f"--wider {wider} does not extend --set {name}: name a set that extends it")
     named = dict.fromkeys(ROADS if given.roads is None else given.roads)
     where = tuple(as_road(road, given.strict) for road in named)
-    asked = gaps_of(between, where, tuple(map(as_road, ELSEWHERE)), given.needed)
+    gap_settings = gaps_of(between, where, tuple(map(as_road, ELSEWHERE)), given.needed)
     recordings = None if given.on is None else recordings_in(Path(given.on), given.strict)
 
     folder = None if given.out is None else Path(given.out)
-    with hold_folder(folder, shared=hands_of(given.jobs).shard is not None):
-        found = Coverages.settled(CoverageQuestion(basis, asked), given)
+    with lock_folder(folder, shared=executor_for(given.jobs).shard is not None):
+        result = Coverages.decide(CoverageQuestion(basis, gap_settings), given)
         traffic = None
         if recordings is not None:
             traffic = count_in_traffic(basis, recordings, tell or (lambda line: None))
-        return replace(found, traffic=traffic, seconds=time.monotonic() - begun)
+        return replace(result, traffic=traffic, seconds=time.monotonic() - started)

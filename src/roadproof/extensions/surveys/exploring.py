@@ -1,27 +1,32 @@
-"""For which values there is a drive, where that changes, and how far a measure can go."""
+"""``roadproof.explore``: values with a drive, their boundaries, and extremes of a measure."""
+
+from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Unpack
 
-from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.question import SearchOptions
+from roadproof.engines.setting import Search, SearchOptions
 from roadproof.errors import UsageError
-from roadproof.evidence.drive_file import road_said
+from roadproof.evidence.drive_file import road_data
 from roadproof.evidence.kinds import Evidence
-from roadproof.extensions.surveys.explore.asking import ask_for
-from roadproof.extensions.surveys.explore.data import AskedFormula, AskedVariation, Exploring, SearchedPlace
+from roadproof.extensions.surveys.explore.data import (
+    ExplorationSettings,
+    ExploredFormula,
+    SearchSetup,
+    VariationRange,
+)
+from roadproof.extensions.surveys.explore.explorable import explorable_of
 from roadproof.extensions.surveys.explore.question import ExploreQuestion, ExploreView
 from roadproof.extensions.surveys.explore.values import ExplorationResult
 from roadproof.extensions.surveys.extremes.measure import Sense
 from roadproof.extensions.surveys.keywords import ExploreKeywords
 from roadproof.extensions.surveys.report import explore as report
 from roadproof.extensions.surveys.settings import Explore
-from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.phrases import Term
-from roadproof.frontends.api.pictures import drawn
-from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.pictures import Picture, drawn, picture
+from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of, searches_of, setting
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.option import takes
@@ -32,14 +37,14 @@ from roadproof.world.road import Road
 
 
 class Explorations(QuestionAnswers[ExploreView]):
-    """What was explored, a formula after the other."""
+    """The explorations, one for each formula."""
 
     question: ExploreQuestion
     pieces = "formulas"
 
     @property
     def explored(self) -> Mapping[str, ExplorationResult]:
-        """What was found, by the name of the formula."""
+        """The results by the name of the formula."""
         return self.view.explored
 
     @property
@@ -68,25 +73,28 @@ class Explorations(QuestionAnswers[ExploreView]):
         return report.sheet_of(self._entries)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
-        """A strip or a map of each formula that was varied."""
-        for name, asked in self.question.named.items():
+        """Yield a strip or a map of each explored formula."""
+        for name, explorable in self.question.named.items():
             if self.explored[name].findings:
-                yield name, picture(report.draw_exploration(asked, self.explored[name]))
+                yield name, picture(report.draw_exploration(explorable, self.explored[name]))
 
     def files(self, pictures: bool) -> dict[str, bytes]:
-        """Pictures of all, and of the drives at boundaries and extremes."""
+        """Return pictures of all formulas, and of the drives at boundaries and extremes."""
         named = self.question.named.items() if pictures else ()
-        every = (x for name, asked in named for x in report.draw_all(name, asked, self.explored[name]))
+        every = (
+            x for name, explorable in named for x in report.draw_all(name, explorable, self.explored[name])
+        )
         return drawn({file: picture(figure) for file, figure in every})
 
     def __str__(self) -> str:
         named = self.question.named.items()
         return "\n".join(
-            report.as_text(asked, self.explored[name], self._seconds_of(name)) for name, asked in named
+            report.as_text(explorable, self.explored[name], self._seconds_of(name))
+            for name, explorable in named
         )
 
     def _seconds_of(self, name: str) -> float | None:
-        """How long the claims of a formula took; None where they were read from files."""
+        """Return the seconds that the claims of a formula took; None if they were read from files."""
         if not self.seconds:
             return None
         return sum(cost.seconds for claim, cost in self.found.costs.items() if name in claim)
@@ -96,7 +104,7 @@ class Explorations(QuestionAnswers[ExploreView]):
 def explore(
     *what: What, using: Definitions | None = None, **options: Unpack[ExploreKeywords]
 ) -> Explorations:
-    """For which values of parameters or limits there is a drive, and how far a measure can go.
+    """Find the values of parameters or limits with a drive, and the extremes of a measure.
 
     ``vary``: least and greatest value by name, ``{"minDanger": (0, 3)}`` or ``{"POV.a_lon.min": (-6, -1)}``,
     one or two. ``least``, ``greatest``: a term, at time 0 or ``when`` a formula holds. ``steps``: values of
@@ -110,28 +118,28 @@ def explore(
     for name in {*vary} & {*home.values}:
         raise UsageError(f"{name} is given a value and varied: leave one out")
     question = explore_question(home, each, given, [(name, *ends) for name, ends in vary.items()])
-    return Explorations.settled(question, given)
+    return Explorations.decide(question, given)
 
 
 def explore_question(
     home: Definitions, what: Sequence[What], given: Explore, ranges: Sequence[tuple[str, Number, Number]]
 ) -> ExploreQuestion:
-    """What is asked of each formula in each spec set, varied over ``ranges``. Raises as ``explore``."""
+    """Return the question about formulas in spec sets, varied over ``ranges``. Raises as ``explore``."""
     place = setting(home, given)
     basis = replace(basis_of(home, given), vehicles=place.vehicles, horizon=place.horizon)
     searches = [*searches_of(home, what, place, SearchOptions(engine=given.engine, solver=given.solver))]
-    formulas = tuple(_asked_formula(home, x, given.when) for x in searches)
+    formulas = tuple(_explored_formula(home, x, given.when) for x in searches)
     measures: dict[Sense, Term | None] = {"least": given.least, "greatest": given.greatest}
-    wanted = [(sense, str(x)) for sense, x in measures.items() if x is not None]
-    first = ask_for(searches[0], ranges, given.steps, given.precision, wanted, formulas[0].when)
-    asked = Exploring(
+    extremes = [(sense, str(x)) for sense, x in measures.items() if x is not None]
+    first = explorable_of(searches[0], ranges, given.steps, given.precision, extremes, formulas[0].when)
+    settings = ExplorationSettings(
         formulas=formulas,
-        vary=tuple(AskedVariation(name=x.name, low=x.low, high=x.high) for x in first.knobs),
+        vary=tuple(VariationRange(name=x.name, low=x.low, high=x.high) for x in first.variables),
         steps=given.steps,
         precision=first.precision,
-        **dict(wanted),
-        place=SearchedPlace(
-            road=None if place.road is None else road_said(place.road),
+        **dict(extremes),
+        place=SearchSetup(
+            road=None if place.road is None else road_data(place.road),
             lanes=place.lanes,
             dt=place.dt,
             reach=place.reach,
@@ -140,19 +148,19 @@ def explore_question(
             solver=given.solver,
         ),
     )
-    question = ExploreQuestion(basis, asked)
+    question = ExploreQuestion(basis, settings)
     _ = question.named
     return question
 
 
-def _asked_formula(home: Definitions, search: Search, when: What | None) -> AskedFormula:
-    """A formula, and the moment at which is measured, in the words of its spec set."""
+def _explored_formula(home: Definitions, search: Search, when: What | None) -> ExploredFormula:
+    """Return a formula and the moment of measuring, in the notation of its spec set."""
     here = replace(home, specification=search.specification)
     if when is None or (isinstance(when, str) and not names_scenarios(here.specification, when)):
         moment = when or ""
     else:
         moment = here.read(when).text
-    return AskedFormula(
+    return ExploredFormula(
         scenario=search.scenario,
         set=search.specification.set_name,
         formula=search.query.text,

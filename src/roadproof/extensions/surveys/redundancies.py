@@ -1,4 +1,4 @@
-"""Which parts of scenarios could be left out, asked in Python."""
+"""``roadproof.redundancy``: the parts of scenarios that could be left out."""
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -9,25 +9,25 @@ from roadproof.extensions.surveys import settings
 from roadproof.extensions.surveys.keywords import RedundancyKeywords
 from roadproof.extensions.surveys.redundancy import (
     ChangeFinding,
+    ChangeFindingData,
     Changes,
-    FindingData,
     RedundancyQuestion,
     RedundancyView,
     finding_data,
 )
 from roadproof.extensions.surveys.report import redundancy as redundancy_report
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of
-from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
+from roadproof.frontends.api.question_answers import QuestionAnswers, evidence_of
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import numbers_of
-from roadproof.library.words import Called, called
+from roadproof.library.words import ScenarioWords, words_by_number
 from roadproof.verdict import Verdict
 
 
 class Redundancies(QuestionAnswers[RedundancyView]):
-    """Which parts of scenarios could be left out, and what shows the others needed."""
+    """The parts of scenarios that could be left out, and evidence that the others are needed."""
 
     pieces = "scenarios"
 
@@ -42,9 +42,9 @@ class Redundancies(QuestionAnswers[RedundancyView]):
         return tuple(evidence_of(x) for x in every if x is not None)
 
     @cached_property
-    def words(self) -> Called:
-        """What the scenarios are called."""
-        return called(self.question.basis.specification, tuple(self.findings))
+    def words(self) -> ScenarioWords:
+        """The titles of the scenarios."""
+        return words_by_number(self.question.basis.specification, tuple(self.findings))
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
@@ -52,7 +52,7 @@ class Redundancies(QuestionAnswers[RedundancyView]):
         return {f"scenario {number}, change {k}": x.verdict for number, k, x in every}
 
     @property
-    def _sheet(self) -> Sheet[FindingData]:
+    def _sheet(self) -> Sheet[ChangeFindingData]:
         names = {number: x.name for number, x in self.words.items()}
         every = (x for each in self.findings.values() for x in each)
         return redundancy_report.sheet_of([finding_data(x, lambda *_: None) for x in every], names)
@@ -65,7 +65,7 @@ class Redundancies(QuestionAnswers[RedundancyView]):
 def redundancy(
     among: Among = None, using: Definitions | None = None, **options: Unpack[RedundancyKeywords]
 ) -> Redundancies:
-    """Which parts of scenarios could be left out; with ``whole`` also those of simple predicates.
+    """Find the parts of scenarios that could be left out; with ``whole`` also parts of simple predicates.
 
     Raises as ``overlap``.
     """
@@ -73,5 +73,5 @@ def redundancy(
     home = definitions_of(using)
     every = numbers_of(home.alone)
     basis = basis_of(home, given, given.vehicles)
-    asked = Changes(among=home.among(among) or every, whole=given.whole)
-    return Redundancies.settled(RedundancyQuestion(basis, asked), given)
+    changes = Changes(among=home.among(among) or every, whole=given.whole)
+    return Redundancies.decide(RedundancyQuestion(basis, changes), given)

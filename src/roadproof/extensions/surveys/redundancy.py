@@ -1,25 +1,27 @@
-"""Which parts of a scenario could be left out: every occurrence, replaced by true and by false.
+"""The question which parts of a scenario are redundant: each occurrence is replaced by true and by false.
 
-Of each change three claims are asked, one after the other until one decides: that the scenario stays
-equivalent on all traces; that it does where vehicles move; that a drive tells the two apart.
+Three claims about each change are asked until one decides. The scenario stays equivalent on all traces; it
+stays equivalent under motion; a drive distinguishes the two.
 """
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field
 from functools import cached_property
 from itertools import chain
-from typing import Annotated, Any, ClassVar, Final, Literal
+from typing import Annotated, ClassVar, Final, Literal
 
-from roadproof.engines.search.question import usual_road
+from roadproof.engines.search.usual_road import usual_road
 from roadproof.errors import InputError
-from roadproof.evidence.answer import Answer
-from roadproof.evidence.answers import shared
-from roadproof.evidence.claim import Claim, Exists, claim_of, valid_under
+from roadproof.evidence.answer import ClaimAnswer
+from roadproof.evidence.answers import headings, shared
+from roadproof.evidence.assuming import valid_under
+from roadproof.evidence.claim import Claim, Exists, claim_of
 from roadproof.evidence.codec import Doc, Key, Rule, read
-from roadproof.library import scenarios as s
-from roadproof.library.alike import likes_of
+from roadproof.extensions.traffic import scenario_parts
+from roadproof.library import scenarios
 from roadproof.library.compose import both, equivalence, implication, negation
 from roadproof.library.elaborate import read_tree
+from roadproof.library.sector_twins import sector_twins
 from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
@@ -27,21 +29,21 @@ from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.logic.syntax import Claim as Written
 from roadproof.questions.basis import Basis
-from roadproof.questions.question import Answers, Place, Steps, heading_of
-from roadproof.reasons import NO_REASON, Reason, Why, joined
+from roadproof.questions.question import Answers, EvidencePlace, Steps, heading_of
+from roadproof.reasons import NO_REASON, Reason, ReasonKind, joined
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
 SCHEMA: Final = "roadproof/redundancy/2"
-Word = Literal[Verdict.PROVED, Verdict.REFUTED, Verdict.UNKNOWN]
+ChangeVerdict = Literal[Verdict.PROVED, Verdict.REFUTED, Verdict.UNKNOWN]
 
 
 @dataclass(frozen=True)
 class Change:
     """One occurrence of a part replaced by a truth value; ``where``: the definitions around it.
 
-    ``weakens``: what is left holds wherever the whole formula does; else it holds only there.
+    ``weakens``: the changed formula follows from the original one; otherwise it implies it.
     """
 
     where: tuple[str, ...]
@@ -52,9 +54,9 @@ class Change:
 
 
 def changes_of(specification: Specification, query: Query, whole: bool = False) -> Iterator[Change]:
-    """Yield every occurrence of a part of ``query``, but itself, by true and by false, from the outside in.
+    """Yield the changes of ``query``: each part of it replaced by true and by false, from the outside in.
 
-    A definition of one instant that compares numbers, or uses no other one, is one part unless
+    A definition of one instant that compares numbers, or uses no other definition, is one part unless
     ``whole``: ``rssViolation``, ``aheadOf``, ``atLane``.
     """
 
@@ -101,7 +103,7 @@ def _is_simple(formula: f.Application) -> bool:
 
 @dataclass(frozen=True)
 class ChangeClaims:
-    """What is asked of a change, in order: on all traces, where vehicles move, and of a drive."""
+    """The claims about a change, in order: on all traces, where vehicles move, and of a drive."""
 
     equal: Claim
     moving: Claim
@@ -111,33 +113,33 @@ class ChangeClaims:
 
 @dataclass(frozen=True)
 class ChangeFinding:
-    """What is known of a change; None where a claim is not settled.
+    """The answers about a change; None where a claim is undecided.
 
-    A trace that tells the two apart counts where no drive does.
+    A trace that distinguishes the two counts if no drive does.
     """
 
     scenario: int
     change: Change
     claims: ChangeClaims
-    equal: Answer | None
-    moving: Answer | None
-    apart: Answer | None
+    equal: ClaimAnswer | None
+    moving: ClaimAnswer | None
+    apart: ClaimAnswer | None
     names: tuple[str, str, str]
 
     @property
-    def verdict(self) -> Word:
-        """PROVED: the part could go. REFUTED: it is needed."""
+    def verdict(self) -> ChangeVerdict:
+        """PROVED: the part is redundant. REFUTED: it is needed."""
         match self.shown:
             case None:
                 return Verdict.UNKNOWN
             case answer if answer.verdict in (Verdict.PROVED, Verdict.VACUOUS):
                 return Verdict.PROVED
-            case _:
+            case ClaimAnswer():
                 return Verdict.REFUTED
 
     @property
-    def shown(self) -> Answer | None:
-        """The answer that decides; None in doubt."""
+    def shown(self) -> ClaimAnswer | None:
+        """The answer that decides; None if none does."""
         answers = (self.equal, self.moving, self.apart)
         decisive = (x for x in answers if x is not None and _decides(x))
         by_trace = (x for x in (self.equal,) if x is not None and x.verdict is Verdict.REFUTED)
@@ -145,42 +147,42 @@ class ChangeFinding:
 
     @property
     def name(self) -> str:
-        """The name of the answer that decides; empty in doubt."""
+        """The name of the answer that decides; empty if none does."""
         every = zip(self.names, (self.equal, self.moving, self.apart), strict=True)
         return next((name for name, x in every if x is not None and x is self.shown), "")
 
     @property
     def redundant(self) -> bool | None:
-        """Whether the part could be left out; None where it is in doubt."""
+        """Return whether the part could be left out; None if undecided."""
         return None if self.shown is None else self.verdict is Verdict.PROVED
 
     @property
     def assuming(self) -> Query | None:
-        """The condition under which the part could go; None where it always could, or could not."""
+        """The condition under which the part is redundant; None if it always is, or is needed."""
         return self.claims.assuming if self.shown is not None and self.shown is self.moving else None
 
     @property
     def claim(self) -> Query:
-        """What the answer that decides is about; that nothing changes where none does."""
+        """The formula of the answer that decides, or else the claim of equivalence."""
         return (self.claims.equal if self.shown is None else self.shown.claim).query
 
     @property
     def reason(self) -> Reason:
-        """Why a change is in doubt, or is told apart by a trace alone."""
+        """The reason why a change is undecided, or is distinguished by a trace alone."""
         if self.shown is not None and _decides(self.shown):
             return NO_REASON
         if self.apart is None:
             return NO_REASON if self.equal is None else self.equal.reason
         mode, apart = self.apart.claim.mode, self.apart.reason
-        if apart == Why.NONE_FOUND() and isinstance(mode, Exists):
-            apart = Why.NONE_AHEAD(mode.horizon)
+        if apart == ReasonKind.NONE_FOUND() and isinstance(mode, Exists):
+            apart = ReasonKind.NONE_AHEAD(mode.horizon)
         if self.shown is not None or self.equal is None:
             return apart
         return joined((apart, self.equal.reason))
 
 
-def _decides(answer: Answer) -> bool:
-    """Whether an answer decides a change for ever: a proof, or a drive."""
+def _decides(answer: ClaimAnswer) -> bool:
+    """Return whether an answer decides a change: a proof or a drive."""
     proved = answer.verdict in (Verdict.PROVED, Verdict.VACUOUS)
     return proved or answer.drive is not None
 
@@ -194,14 +196,14 @@ def _finding(
 
 @dataclass(frozen=True)
 class RedundancyView:
-    """The findings on all changes, by scenario, in the order in which they are met."""
+    """The findings on all changes, by scenario, in the order of changes."""
 
     findings: Mapping[int, tuple[ChangeFinding, ...]]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Changes:
-    """Of which scenarios parts are replaced; ``whole``: also the parts of simple predicates."""
+    """The scenarios whose parts are replaced; ``whole``: also the parts of simple predicates."""
 
     among: Annotated[tuple[shared.Number, ...], Rule(least=1), Doc("The scenarios.")]
     whole: Annotated[bool, Doc("Whether parts of simple predicates are replaced, too.")] = False
@@ -213,7 +215,7 @@ class RedundancyQuestion:
 
     kind: ClassVar[str] = "redundancy"
     basis: Basis
-    asked: Changes = field(default_factory=lambda: Changes(among=(1,)))
+    settings: Changes = field(default_factory=lambda: Changes(among=(1,)))
 
     @property
     def work(self) -> Work:
@@ -221,19 +223,19 @@ class RedundancyQuestion:
         return Work(self.basis.effort, self.basis.proof)
 
     @classmethod
-    def of(cls, basis: Basis, asked: object, where: str) -> "RedundancyQuestion":
+    def of(cls, basis: Basis, settings: object, where: str) -> "RedundancyQuestion":
         """Return the question that plain data ask. Raises ``InputError``."""
-        data = read(Changes, asked, where)
-        unknown = [x for x in data.among if x not in s.numbers_of(basis.specification)]
+        data = read(Changes, settings, where)
+        unknown = [x for x in data.among if x not in scenarios.numbers_of(basis.specification)]
         if unknown:
             raise InputError(f"{where}: set {basis.specification.set_name} has no scenario {unknown[0]}")
         return cls(basis, data)
 
     def batches(self, known: Answers) -> list["ChangeBatch"]:
-        """A batch for scenarios that differ in their road sector only: a drive of each, then its changes."""
+        """Return a batch for scenarios that differ only in their road sector: drives and changes."""
         groups: dict[int, list[int]] = {}
-        for number in self.asked.among:
-            groups.setdefault(self._likes[number], []).append(number)
+        for number in self.settings.among:
+            groups.setdefault(self._twins[number], []).append(number)
         return [ChangeBatch(self, tuple(numbers)) for numbers in groups.values()]
 
     def drive_of(self, number: int) -> Claim:
@@ -241,14 +243,15 @@ class RedundancyQuestion:
         return self._existing(number, self._query(number))
 
     @cached_property
-    def _likes(self) -> dict[int, int]:
-        return likes_of(self.basis.specification)
+    def _twins(self) -> dict[int, int]:
+        return sector_twins(self.basis.specification)
 
     def _query(self, number: int) -> Query:
-        return s.applied(self.basis.specification, s.Scenario(number, self.basis.specification.set_name))
+        home = self.basis.specification
+        return scenarios.apply_scenario(home, scenarios.Scenario(number, home.set_name))
 
     def _existing(self, number: int, query: Query) -> Claim:
-        """Return that there is a drive, on the usual road of a scenario: what is negated chooses none."""
+        """Return the claim that there is a drive, on the usual road of a scenario."""
         basis = self.basis
         mode = Exists(
             road=usual_road(self._query(number).formula),
@@ -259,7 +262,7 @@ class RedundancyQuestion:
         return claim_of(basis.specification, query, mode, basis.values)
 
     def named(self, number: int) -> list[tuple[tuple[str, str, str], ChangeClaims]]:
-        """The claims of each change with their names; changes that come to the same have one."""
+        """Return the claims of each change with their names; equal changes share one."""
         if number not in self._worked_out:
             first: dict[Formula, int] = {}
             made = []
@@ -276,17 +279,16 @@ class RedundancyQuestion:
 
     def changes(self, number: int) -> list[Change]:
         """Return the changes of a scenario."""
-        return [*changes_of(self.basis.specification, self._query(number), self.asked.whole)]
+        return [*changes_of(self.basis.specification, self._query(number), self.settings.whole)]
 
     def _claims_of(self, number: int, change: Change) -> ChangeClaims:
         home, query = self.basis.specification, self._query(number)
-        vehicles = s.vehicles_of(home, s.Scenario(number, home.set_name))
-        moving = both(*(s.leaves_at_once(home, vehicle) for vehicle in vehicles))
+        vehicles = scenarios.vehicles_of(home, scenarios.Scenario(number, home.set_name))
+        moving = both(*(scenario_parts.leaves_at_once(home, vehicle) for vehicle in vehicles))
         there = implication(both(moving, query), change.changed)
         back = implication(both(moving, change.changed), query)
-        apart = (
-            both(change.changed, negation(query)) if change.weakens else both(query, negation(change.changed))
-        )
+        true, false = (change.changed, query) if change.weakens else (query, change.changed)
+        apart = both(true, negation(false))
         return ChangeClaims(
             valid_under(home, equivalence(query, change.changed)),
             valid_under(home, both(there, back)),
@@ -305,26 +307,29 @@ class RedundancyQuestion:
 
     def view(self, known: Answers) -> RedundancyView:
         """Return what is known of each change."""
-        found = {
+        findings = {
             number: tuple(
                 _finding(number, change, claims, names, known)
                 for change, (names, claims) in zip(self.changes(number), self.named(number), strict=True)
             )
-            for number in self.asked.among
+            for number in self.settings.among
         }
-        return RedundancyView(found)
+        return RedundancyView(findings)
 
-    def data(self, view: RedundancyView, place: Place, seconds: float) -> "RedundancyData":
+    def data(self, view: RedundancyView, place: EvidencePlace, seconds: float) -> "RedundancyData":
         """Return the view as ``--json`` prints it."""
-        said: dict[str, Any] = {"set": self.basis.specification.set_name, **self.basis.said()}
-        every = (x for each in view.findings.values() for x in each)
-        verdicts = tuple(finding_data(x, place) for x in every)
-        return RedundancyData(**heading_of(SCHEMA, self.basis), **said, seconds=seconds, verdicts=verdicts)
+        return RedundancyData(
+            **heading_of(SCHEMA, self.basis),
+            set=self.basis.specification.set_name,
+            **self.basis.common_data(),
+            seconds=seconds,
+            verdicts=tuple(finding_data(x, place) for each in view.findings.values() for x in each),
+        )
 
 
 @dataclass(frozen=True)
 class ChangeBatch:
-    """The claims of scenarios that are alike: of each change they are asked until one decides."""
+    """The claims of scenarios that differ in their road sector only; each change is asked until decided."""
 
     question: RedundancyQuestion
     numbers: tuple[int, ...]
@@ -345,9 +350,9 @@ class ChangeBatch:
                         break
 
 
-def finding_data(x: ChangeFinding, place: Place) -> "FindingData":
+def finding_data(x: ChangeFinding, place: EvidencePlace) -> "ChangeFindingData":
     """Return what ``--json`` prints of a change."""
-    return FindingData(
+    return ChangeFindingData(
         scenario=x.scenario,
         part=x.change.part,
         where=x.change.where,
@@ -363,8 +368,8 @@ def finding_data(x: ChangeFinding, place: Place) -> "FindingData":
 
 
 @dataclass(frozen=True, kw_only=True)
-class FindingData:
-    """What becomes of a scenario where one occurrence of a part is replaced by a truth value."""
+class ChangeFindingData:
+    """The effect on a scenario of one occurrence of a part replaced by a truth value."""
 
     scenario: shared.Number
     part: Annotated[str, Doc("The part that is replaced by a truth value.")]
@@ -372,18 +377,18 @@ class FindingData:
     value: Annotated[bool, Key("as"), Doc("The truth value.")]
     changed: Annotated[str, Doc("The scenario with that put in place of the part.")]
     redundant: Annotated[bool | None, Doc("Whether the part could be left out; null in doubt.")]
-    verdict: Word
+    verdict: ChangeVerdict
     assuming: Annotated[
         str, Doc("Of motion: that a vehicle which leaves L has a first moment outside it; else empty.")
     ]
     claim: Annotated[shared.Formula, Doc("What the evidence is about; that nothing changes in doubt.")]
-    evidence: Annotated[shared.KeptEvidence, Doc("A certificate, a drive or a trace; null in doubt.")]
+    evidence: Annotated[shared.EvidenceField, Doc("A certificate, a drive or a trace; null in doubt.")]
     reason: shared.Reason = NO_REASON
 
 
 @dataclass(frozen=True, kw_only=True)
-class RedundancyData(shared.Heading):
-    """Which parts of scenarios could be left out."""
+class RedundancyData(headings.AnswerHeading):
+    """The parts of scenarios that could be left out."""
 
     schema: Literal["roadproof/redundancy/2"] = SCHEMA
     set: shared.SetName
@@ -392,4 +397,4 @@ class RedundancyData(shared.Heading):
     specs: shared.Specifications
     view: shared.Dense = "dense"
     seconds: shared.Seconds = 0.0
-    verdicts: tuple[FindingData, ...]
+    verdicts: tuple[ChangeFindingData, ...]

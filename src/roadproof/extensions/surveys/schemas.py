@@ -1,9 +1,9 @@
-"""What the schemas of the JSON files of this extension are called."""
+"""Titles of the schemas of this extension's JSON files."""
 
 from collections.abc import Mapping
 
 from roadproof.extensions.surveys.classify.data import ClassesData
-from roadproof.extensions.surveys.coverage.kept import CoverageData
+from roadproof.extensions.surveys.coverage.schema import CoverageData
 from roadproof.extensions.surveys.explore.data import ExploreData
 from roadproof.extensions.surveys.redundancy import RedundancyData
 from roadproof.extensions.surveys.survey import SurveyData

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings import groups
 from roadproof.frontends.settings.option import extensible, option, search
-from roadproof.frontends.settings.readers import (
-    text_or_none,
-    whole,
-)
+from roadproof.frontends.settings.readers import whole
 from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
@@ -20,6 +18,11 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.phrases import Term
     from roadproof.frontends.settings.value_types import RoadLike
     from roadproof.library.bind import Number
+
+
+def text_or_none(text: str) -> str | None:
+    """The text, or None where it is empty."""
+    return text or None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,16 +1,16 @@
-"""Surveys that have no function of their own."""
+"""``roadproof.ask``: surveys without a function of their own."""
 
 from collections.abc import Callable, Mapping
 from typing import Unpack
 
 from roadproof.errors import UsageError
-from roadproof.evidence.answer import Answer
+from roadproof.evidence.answer import ClaimAnswer
 from roadproof.extensions.surveys import survey
 from roadproof.extensions.surveys.keywords import AskKeywords
 from roadproof.extensions.surveys.settings import Ask
 from roadproof.extensions.surveys.survey import Survey, verdict_of
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of
-from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Column, Sheet
@@ -19,10 +19,10 @@ from roadproof.library.scenarios import numbers_of
 from roadproof.questions.basis import Basis
 from roadproof.verdict import Verdict
 
-Row = tuple[str, Answer | None]
+Row = tuple[str, ClaimAnswer | None]
 
 
-class SurveyAnswers(QuestionAnswers[Mapping[str, Answer | None]]):
+class SurveyAnswers(QuestionAnswers[Mapping[str, ClaimAnswer | None]]):
     """The answers to a survey, each with a verdict."""
 
     @property
@@ -57,8 +57,8 @@ def ask(
 ) -> SurveyAnswers:
     """Return the answers to a survey of scenarios.
 
-    ``among``: scenarios such as "1,3-8" (all where None). ``effort``, a number of units, is for one drive;
-    ``out``: a folder in which answers are kept as they come; ``say`` is told of kept ones that do not count.
+    ``among``: scenarios such as "1,3-8" (all if None). ``effort``: units of work for one drive; ``out``: a
+    folder for answers, which are written as they come; ``say`` is called for stored answers that are refused.
     Raises ``InputError``, ``UsageError``.
     """
     given = Ask.of(options)
@@ -67,4 +67,4 @@ def ask(
     question = about(basis_of(home, given, given.vehicles), survey.Among(numbers=tuple(numbers)))
     if not question.queries:
         raise UsageError(f"--among {among} selects no scenario: select others")
-    return SurveyAnswers.settled(question, given)
+    return SurveyAnswers.decide(question, given)

@@ -5,6 +5,7 @@ from roadproof.extension import Extension
 EXTENSION = Extension(
     title="Recorded and simulated traffic: monitors and evaluations",
     audience="researchers",
+    page="docs/how-to/highd.md",
     needs=(
         "drivers",
         "maps",
@@ -17,6 +18,11 @@ EXTENSION = Extension(
         "roads": "evaluating:roads",
         "convert": "converting:convert",
         "simulate": "simulating:simulate",
+    },
+    reserved={
+        "formats": ("highD", "exiD", "inD", "NGSIM", "CSV", "Parquet", "converted"),
+        "traces": (".csv", ".parquet", ".json"),
+        "drives": (".json",),
     },
     schemas=("schemas:TITLES",),
     frames=("formats.table:frame_of",),

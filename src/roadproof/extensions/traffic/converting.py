@@ -10,7 +10,7 @@ from roadproof.extensions.traffic.formats.large import is_large, write_large
 from roadproof.extensions.traffic.formats.source import RecordingSource
 from roadproof.extensions.traffic.formats.sources import CSV, PARQUET, find_sources
 from roadproof.runtime import pool
-from roadproof.runtime.files import hold_folder
+from roadproof.runtime.files import lock_folder
 from roadproof.runtime.pool import Progress
 from roadproof.runtime.records import dataclass
 
@@ -52,7 +52,7 @@ def convert(
         raise InputError(f"recordings={path}: they are converted already")
     if folder.resolve() == (Path(path) if Path(path).is_dir() else Path(path).parent).resolve():
         raise InputError(f"--out {out} is where the recordings are: name another folder")
-    with hold_folder(folder):
+    with lock_folder(folder):
         working = pool.work(_Converter(folder), sources, jobs, None, progress, "recordings", fresh=True)
         with closing(pool.in_order(working)) as made:
             counts = list(made)

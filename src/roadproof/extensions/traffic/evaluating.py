@@ -19,13 +19,13 @@ from roadproof.extensions.traffic.evaluate.experiment import (
     run_experiment,
     saved_findings,
 )
-from roadproof.extensions.traffic.evaluate.questions import Settings, askable
+from roadproof.extensions.traffic.evaluate.questions import EvaluationSettings, askable
 from roadproof.extensions.traffic.evaluate.recheck import recheck
 from roadproof.extensions.traffic.evaluate.results import (
     as_json,
     driver_cells,
     driver_columns,
-    question_mark,
+    question_digest,
     uncertain_pairs,
 )
 from roadproof.extensions.traffic.evaluate.totals import Totals
@@ -39,17 +39,18 @@ from roadproof.extensions.traffic.report.figures import draw_figures, remove_rep
 from roadproof.extensions.traffic.report.research_questions import facts
 from roadproof.extensions.traffic.report.tables import as_text
 from roadproof.extensions.traffic.report.traffic import comparison_table, drivers_table, results_tables
+from roadproof.extensions.traffic.scenario_parts import COMPARISON
 from roadproof.extensions.traffic.settings import Evaluate
-from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, load
+from roadproof.frontends.api.pictures import Picture, picture
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.cases import Case
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import exact
-from roadproof.library.scenarios import COMPARISON, MIN_DANGER
-from roadproof.runtime.executors import hands_of
-from roadproof.runtime.files import hold_folder
+from roadproof.library.scenarios import MIN_DANGER
+from roadproof.runtime.executors import executor_for
+from roadproof.runtime.files import lock_folder
 from roadproof.runtime.pool import Say
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
@@ -81,16 +82,16 @@ class Evaluation(Table, BuildResult):
         return recording_cases(names, self.failed, self.outcome.lost, broken, where)
 
     @property
-    def settings(self) -> Settings:
-        """What was asked."""
+    def settings(self) -> EvaluationSettings:
+        """The settings of the evaluation."""
         return self.experiment.settings
 
     @property
     def findings(self) -> tuple[Findings, ...]:
-        """What was found in each recording, read from the folder unless there is none."""
+        """The findings in each recording, read from the folder if there is one."""
         if self.kept is not None:
             return self.kept
-        return tuple(found for _, found in saved_findings(self.experiment, self.outcome))
+        return tuple(findings for _, findings in saved_findings(self.experiment, self.outcome))
 
     @property
     def totals(self) -> Totals:
@@ -171,7 +172,7 @@ class Evaluation(Table, BuildResult):
         return frame_of(rows)
 
     def as_data(self) -> JsonObject:
-        """As the plain data of ``--json``."""
+        """Return the plain data of ``--json``."""
         return as_json(self.totals, self.failed)
 
     def plot(self) -> Picture:
@@ -219,54 +220,56 @@ def evaluate(
     ``driver.spec`` (``load(specs=["driver"])``), such as careful, that matches are put to. Raises
     ``InputError``, ``UsageError``.
     """
-    given = Evaluate.of(options)
-    models = tuple(given.drivers)
-    home = using or load("base", "extA", "ext", specs=[DRIVERS] if models else [])
-    settings = replace(_settings_of(home, given), drivers=models)
+    arguments = Evaluate.of(options)
+    models = tuple(arguments.drivers)
+    definitions = using or load("base", "extA", "ext", specs=[DRIVERS] if models else [])
+    settings = replace(_settings_of(definitions, arguments), drivers=models)
     if out is not None:
-        return _evaluate(Path(path), Path(out), settings, given)
-    if hands_of(given.jobs).shard is not None:
+        return _evaluate(Path(path), Path(out), settings, arguments)
+    if executor_for(arguments.jobs).shard is not None:
         raise UsageError("a shard requires out, the folder that the runs share")
     with tempfile.TemporaryDirectory() as folder:
-        found = _evaluate(Path(path), Path(folder), settings, replace(given, pictures=False))
-        return replace(found, folder=None, kept=found.findings)
+        evaluation = _evaluate(Path(path), Path(folder), settings, replace(arguments, pictures=False))
+        return replace(evaluation, folder=None, kept=evaluation.findings)
 
 
-def _settings_of(home: Definitions, given: Evaluate) -> Settings:
-    """What is asked of traffic. Raises ``UsageError``, ``InputError``."""
-    if MIN_DANGER in home.values:
+def _settings_of(definitions: Definitions, arguments: Evaluate) -> EvaluationSettings:
+    """Return the settings of an evaluation. Raises ``UsageError``, ``InputError``."""
+    if MIN_DANGER in definitions.values:
         raise UsageError(f"params {MIN_DANGER}: evaluate takes several values of it; use min_danger=(0, 0.6)")
-    return Settings(
-        home.library,
-        home.specification.options,
-        home.all_values(),
-        sets=home.sets,
-        min_danger=tuple(exact(MIN_DANGER, x, "s") for x in given.min_danger),
-        scenarios=home.among(given.among) or askable(home.specification),
-        classes=tuple(given.classes),
-        convention=given.end,
-        detectors=COMPARISON if given.detectors else (),
+    return EvaluationSettings(
+        definitions.library,
+        definitions.specification.options,
+        definitions.all_values(),
+        sets=definitions.sets,
+        min_danger=tuple(exact(MIN_DANGER, x, "s") for x in arguments.min_danger),
+        scenarios=definitions.among(arguments.among) or askable(definitions.specification),
+        classes=tuple(arguments.classes),
+        convention=arguments.end,
+        detectors=COMPARISON if arguments.detectors else (),
     )
 
 
-def _evaluate(path: Path, out: Path, settings: Settings, given: Evaluate) -> Evaluation:
-    """As ``evaluate``, with what is asked as a value, in a folder that no other run is writing into."""
-    hands = hands_of(given.jobs)
-    experiment = Experiment(path, out, settings, hands, given.keep_going, given.strict, given.road)
-    say = given.tell or (lambda line: None)
+def _evaluate(path: Path, out: Path, settings: EvaluationSettings, arguments: Evaluate) -> Evaluation:
+    """Evaluate into a folder, which is locked against other runs."""
+    executor = executor_for(arguments.jobs)
+    experiment = Experiment(
+        path, out, settings, executor, arguments.keep_going, arguments.strict, arguments.road
+    )
+    say = arguments.tell or (lambda line: None)
     experiment.sources()
-    with hold_folder(out, shared=hands.shard is not None):
+    with lock_folder(out, shared=executor.shard is not None):
         remove_report(out)
         outcome = run_experiment(experiment, say)
-        denied = tuple(_denied(experiment, outcome, say)) if given.check else ()
-        write_report(out, outcome.totals, outcome.failed, given.pictures)
+        denied = tuple(_denied(experiment, outcome, say)) if arguments.check else ()
+        write_report(out, outcome.totals, outcome.failed, arguments.pictures)
         _sweep(out)
         return Evaluation(experiment, outcome, denied, out)
 
 
 def _denied(experiment: Experiment, outcome: ExperimentOutcome, say: Say) -> Iterator[str]:
-    """Every answer again, recording by recording, from what was saved."""
-    question = question_mark(experiment.settings)
+    """Yield the saved answers that the recursive evaluator denies, recording by recording."""
+    question = question_digest(experiment.settings)
     for source, findings in saved_findings(experiment, outcome):
         recording = source.read()
         questions = questions_for(experiment.settings, question, recording)
@@ -323,8 +326,10 @@ def roads(path: str | Path, road: str | None = None) -> tuple[RecordedRoad, ...]
 def _road(format_name: str, recording: Recording) -> RecordedRoad:
     lanes = []
     for lane in recording.lanes:
-        ours = tuple((x.id, str(x.attribute), str(x.zone)) for x in recording.lanelets if x.lane == lane.name)
-        lanes.append((lane.name, lane.direction, ours or ((lane.name, "main", "main"),)))
+        lanelets = tuple(
+            (x.id, str(x.attribute), str(x.zone)) for x in recording.lanelets if x.lane == lane.name
+        )
+        lanes.append((lane.name, lane.direction, lanelets or ((lane.name, "main", "main"),)))
     return RecordedRoad(
         recording.name, format_name, recording.rate, recording.vehicles, tuple(lanes), recording.notes
     )

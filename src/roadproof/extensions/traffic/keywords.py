@@ -1,4 +1,4 @@
-"""Keyword arguments of each question; made by ``roadproof.frontends.settings.keywords_file``."""
+"""Keyword arguments of each question; ``make generated`` writes this file."""
 
 from __future__ import annotations
 

@@ -1,6 +1,8 @@
-"""What a formula is on one trace: a drive, samples, or vehicles of a recording."""
+"""The monitor of one trace: a drive, samples, or vehicles of a recording."""
 
-from collections.abc import Iterator, Mapping
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from math import isfinite
@@ -8,21 +10,22 @@ from pathlib import Path
 from typing import Any, TypeAlias, Unpack
 
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.answers.shared import bends
+from roadproof.evidence.answers.headings import bends
 from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.strict import JsonObject
-from roadproof.extension import entries, imported
-from roadproof.extensions.traffic.answers import monitor as kept
-from roadproof.extensions.traffic.answers.monitor import Override, Place, Truth
+from roadproof.evidence.specifications import load_specs_beside
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
+from roadproof.extension import entries, import_entry
+from roadproof.extensions.traffic.answers import monitor as monitor_data
+from roadproof.extensions.traffic.answers.monitor import MonitoredTraceData, OverrideData, Truth
 from roadproof.extensions.traffic.evaluate import on_trace as driven
 from roadproof.extensions.traffic.evaluate.decisions import Decision
 from roadproof.extensions.traffic.evaluate.observed import (
-    FirstAnswer,
+    MonitorResult,
     Spans,
-    answer_where_they_stand,
+    note_on_standing,
     observe_drive,
     observe_samples,
 )
@@ -43,25 +46,30 @@ from roadproof.extensions.traffic.formats.sources import has_numbers
 from roadproof.extensions.traffic.formats.table import Frame, columns_of
 from roadproof.extensions.traffic.keywords import MonitorKeywords
 from roadproof.extensions.traffic.report.one_trace import as_text, draw_strips
-from roadproof.extensions.traffic.settings import Monitor
-from roadproof.frontends.api.answer import Picture, picture
+from roadproof.extensions.traffic.scenario_parts import lane_owner
+from roadproof.extensions.traffic.settings import MonitorSettings
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of, load
+from roadproof.frontends.api.pictures import Picture, picture
 from roadproof.frontends.api.settings import as_road, positive
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import bind, values_with
-from roadproof.library.roles import cast_of, subject_in, vehicle_order
-from roadproof.library.scenarios import SUBJECT, Scenario, lane_owner
+from roadproof.library.loading import bundled_library
+from roadproof.library.roles import assign_roles, subject_in, vehicle_order
+from roadproof.library.scenarios import SUBJECT, Scenario
 from roadproof.library.specification import Library, Query
+from roadproof.questions.question import QUESTION
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 from roadproof.world.length_error import LengthError, length_error_of
+from roadproof.world.not_read import left_out_in, road_not_read_note
 from roadproof.world.road import Road
-from roadproof.world.unread import left_out_in, unread_of_road
 
 # A path, a judged drive, a drive file, a trace that was read, or columns by name: arrays, or a frame.
-TraceLike: TypeAlias = str | Path | JudgedDrive | DriveFile | OneTrace | Mapping[str, Any] | Frame
+Columns: TypeAlias = Mapping[str, Any] | Frame
+"""Columns by name: numpy arrays, lists, or a frame of polars or pandas."""
+TraceLike: TypeAlias = str | Path | JudgedDrive | DriveFile | OneTrace | Columns
 _CODES: dict[Truth, ExitCode] = {
     "true": ExitCode.AS_EXPECTED,
     "false": ExitCode.UNEXPECTED,
@@ -74,15 +82,15 @@ class MonitorAnswer(Table):
     """The answer on one trace, with the definitions of ``library``; ``place`` says on which trace."""
 
     library: Library
-    observed: FirstAnswer
-    place: Place
+    observed: MonitorResult
+    place: MonitoredTraceData
     notes: tuple[str, ...] = ()
     road: Road | None = None
     decisions: tuple[Decision, ...] = ()
 
     @property
     def length_error(self) -> LengthError | None:
-        """How far lengths in lanes of the road are from those in s; None where it is straight."""
+        """Return how far lengths in lanes of the road are from those in s; None where it is straight."""
         return length_error_of(self.road)
 
     @property
@@ -92,7 +100,7 @@ class MonitorAnswer(Table):
 
     @property
     def verdict(self) -> Truth:
-        """At the first sample: "true", "false", or "undecided" where what comes after the trace decides."""
+        """The verdict at the first sample; "undecided" where it depends on what comes after the trace."""
         return self.observed.verdict
 
     @property
@@ -114,10 +122,10 @@ class MonitorAnswer(Table):
         ]
 
     def as_data(self) -> JsonObject:
-        """As the plain data of ``--json``."""
+        """Return the plain data of ``--json``."""
         x = self.observed
-        answer = kept.Answer(
-            **heading(kept.SCHEMA, self.library),
+        answer = monitor_data.MonitorData(
+            **heading(monitor_data.SCHEMA, self.library),
             length_error=bends(self.road),
             formula=x.formula,
             view=x.view,
@@ -129,7 +137,7 @@ class MonitorAnswer(Table):
             seconds=x.seconds,
             dt=str(x.dt),
             parts=tuple(
-                kept.Part(
+                monitor_data.FormulaPartData(
                     formula=strip.name,
                     true=_ended(strip.true),
                     undecided=_ended(strip.undecided),
@@ -139,7 +147,7 @@ class MonitorAnswer(Table):
             ),
             notes=self.notes,
             left_out=self.left_out,
-            drivers=tuple(map(driven.as_kept, self.decisions)),
+            drivers=tuple(map(driven.driver_verdict, self.decisions)),
             **vars(self.place),
         )
         return write(answer)
@@ -159,12 +167,12 @@ def _finite(value: float) -> float | None:
     return value if isfinite(value) else None
 
 
-def _ended(spans: Spans) -> kept.Spans:
+def _ended(spans: Spans) -> monitor_data.Spans:
     """Spans of which one that never ends has no end."""
     return tuple((begin, _finite(end)) for begin, end in spans)
 
 
-def trace(columns: "Mapping[str, Any] | Frame", road: RoadLike = "main-2") -> OneTrace:
+def trace(columns: Columns, road: RoadLike = "main-2") -> OneTrace:
     """A trace out of columns: numpy arrays by name, or a frame of polars or pandas.
 
     Columns are ``time`` (s), ``vehicle`` (a name), ``s d`` (front-left corner, m), ``v_lon v_lat`` (m/s),
@@ -173,14 +181,14 @@ def trace(columns: "Mapping[str, Any] | Frame", road: RoadLike = "main-2") -> On
     """
     known = as_road(road)
     made = of_columns(columns_of(columns), known)
-    return replace(made, notes=(*unread_of_road(known), *made.notes))
+    return replace(made, notes=(*road_not_read_note(known), *made.notes))
 
 
-@takes(Monitor)
+@takes(MonitorSettings)
 def monitor(
     what: What, on: TraceLike, using: Definitions | None = None, **options: Unpack[MonitorKeywords]
 ) -> MonitorAnswer:
-    """Where a formula holds on one trace.
+    """Return where a formula holds on one trace.
 
     ``on``: a drive (judged exactly in dense time unless ``view`` is "recorded"; then sampled every ``dt`` s),
     an OpenSCENARIO file (samples, unless ``view`` is "dense"),
@@ -193,21 +201,23 @@ def monitor(
     means. ``drivers``: driver models that are put in place of SV, from the start on; so are those whose
     boundary the formula names. Raises ``InputError``, ``UsageError``, ``TextError``.
     """
-    given = Monitor.of(options)
+    settings = MonitorSettings.of(options)
     if isinstance(on, str | Path) and str(on).endswith(".json"):
-        return _on_drive(what, load_drive(Path(on)), str(on), using, given)
+        file = load_drive(Path(on))
+        definitions = using or of_file(file, specifications_of(file, Path(on).parent))
+        return _on_drive(what, file, str(on), definitions, settings)
     if isinstance(on, JudgedDrive | DriveFile):
-        return _on_drive(what, on.file if isinstance(on, JudgedDrive) else on, "drive", using, given)
-    if given.view == "dense" and isinstance(on, str | Path) and Path(on).suffix in entries("drives"):
-        return _on_given_drive(what, Path(str(on)), definitions_of(using), given)
-    if given.view == "dense":
+        return _on_drive(what, on.file if isinstance(on, JudgedDrive) else on, "drive", using, settings)
+    if settings.view == "dense" and isinstance(on, str | Path) and Path(on).suffix in entries("drives"):
+        return _on_given_drive(what, Path(str(on)), definitions_of(using), settings)
+    if settings.view == "dense":
         raise UsageError("--view dense requires a drive or OpenSCENARIO file: others have samples only")
-    home = definitions_of(using)
-    return _on_trace(what, _read(on, given), home, home.all_values(), {}, given)
+    definitions = definitions_of(using)
+    return _on_trace(what, _read(on, settings), definitions, definitions.all_values(), {}, settings)
 
 
-def _read(on: "str | Path | OneTrace | Mapping[str, Any] | Frame", given: Monitor) -> OneTrace:
-    road, names = given.road, dict(given.roles or {})
+def _read(on: str | Path | OneTrace | Columns, settings: MonitorSettings) -> OneTrace:
+    road, names = settings.road, dict(settings.roles or {})
     if isinstance(on, OneTrace):
         if names and on.names:
             raise UsageError(f"roles={names}: the vehicles of this trace have roles already")
@@ -215,16 +225,16 @@ def _read(on: "str | Path | OneTrace | Mapping[str, Any] | Frame", given: Monito
     if not isinstance(on, str | Path):
         return trace(on, road or "main-2")
     if Path(on).suffix in (".csv", ".parquet", *entries("traces")) and not has_numbers(Path(on)):
-        return read_samples(Path(on), None if road is None else as_road(road), given.strict)
+        return read_samples(Path(on), None if road is None else as_road(road), settings.strict)
     if isinstance(road, Road):
         raise UsageError(f"--road: {on} is a recording; name a road by its name, path or map, or omit it")
     chart = None if road is None else str(road)
     if is_pair(str(on)):
         if names:
             raise UsageError(f"--roles: the order of the vehicles in {on} says their roles; omit --roles")
-        return read_pair(str(on), given.frames, given.strict, chart)
+        return read_pair(str(on), settings.frames, settings.strict, chart)
     if names:
-        return read_vehicles(Path(on), _numbers(names), given.frames, str(on), given.strict, chart)
+        return read_vehicles(Path(on), _numbers(names), settings.frames, str(on), settings.strict, chart)
     raise InputError(
         f"{on}: a trace is a drive (.json), samples (.csv, .parquet or .xosc), or vehicles of a recording "
         "such as highd/01_tracks.csv:12,15; --roles SV=12,POV=15 names them, too"
@@ -239,98 +249,114 @@ def _numbers(names: Mapping[str, str]) -> dict[str, int]:
     return {role: int(name) for role, name in names.items()}
 
 
-def of_file(file: DriveFile) -> Definitions:
-    """The definitions under which a drive file was judged."""
-    home = load(file.set_name, options=file.options)
-    return Definitions(home.specification, home.sets, file.values)
+def of_file(file: DriveFile, specs: Iterable[Path] = ()) -> Definitions:
+    """Return the definitions under which a drive file was judged, with the specifications beside it."""
+    definitions = load(file.set_name, options=file.options, specs=specs)
+    return Definitions(definitions.specification, definitions.sets, file.values)
+
+
+def specifications_of(file: DriveFile, folder: Path) -> tuple[Path, ...]:
+    """Return the specifications beside a drive that its options need. Raises ``InputError``."""
+    head = folder / QUESTION
+    if {*file.options} <= {*bundled_library().options} or not head.is_file():
+        return ()
+    content = read_json(head, LARGEST_INDEX)
+    basis = content.get("basis") if isinstance(content, dict) else None
+    return load_specs_beside(Fields(basis, str(head)), folder, ())[1] if isinstance(basis, dict) else ()
 
 
 def _on_drive(
-    what: What, file: DriveFile, source: str, using: Definitions | None, given: Monitor
+    what: What, file: DriveFile, source: str, using: Definitions | None, settings: MonitorSettings
 ) -> MonitorAnswer:
-    home = using or of_file(file)
-    values = values_with(home.library, {**file.values, **home.values})
-    step = positive("dt", given.dt, "s")
+    definitions = using or of_file(file)
+    values = values_with(definitions.library, {**file.values, **definitions.values})
+    step = positive("dt", settings.dt, "s")
     samples = sample_drive(file.drive, file.road, file.horizon, step, source)
-    overruled = tuple(_overruled(file, home, values))
-    if given.view == "recorded":
-        answer = _on_trace(what, samples, home, values, file.lanes, given)
+    overruled = tuple(_overruled(file, definitions, values))
+    if settings.view == "recorded":
+        answer = _on_trace(what, samples, definitions, values, file.lanes, settings)
         return replace(answer, place=replace(answer.place, overruled=overruled))
-    number, query = home.numbered(what, samples.lanes)
-    roles = cast_of([*samples.lanes], query.vehicles, given.roles or {}, f"{source}: roles")
+    number, query = definitions.numbered(what, samples.lanes)
+    roles = assign_roles([*samples.lanes], query.vehicles, settings.roles or {}, f"{source}: roles")
     played, drive = play_samples(samples, roles), file.drive
-    drive = drive.cast({roles.called(name): name for name in drive.vehicles})
-    lanes = _lanes(home, query, number, played, file.lanes, given)
+    drive = drive.cast({roles.role_of(name): name for name in drive.vehicles})
+    lanes = _lanes(definitions, query, number, played, file.lanes, settings)
     formula = bind(query.formula, file.road, lanes, values)
     observed = observe_drive(query.text, formula, drive, file.horizon, step)
-    place = _place(played, home, query, lanes, overruled)
-    casts = driven.casts_of(home, query, number, tuple(given.drivers))
-    found = tuple(driven.decisions_on(replace(file, drive=drive), casts, home, values))
-    notes = (*samples.notes, *answer_where_they_stand(query.text, formula, played.batch, given.end))
-    return MonitorAnswer(home.library, observed, place, notes, file.road, found)
+    place = _place(played, definitions, query, lanes, overruled)
+    casts = driven.scenario_casts(definitions, query, number, tuple(settings.drivers))
+    decisions = tuple(driven.decisions_on(replace(file, drive=drive), casts, definitions, values))
+    notes = (*samples.notes, *note_on_standing(query.text, formula, played.batch, settings.end))
+    return MonitorAnswer(definitions.library, observed, place, notes, file.road, decisions)
 
 
-def _on_given_drive(what: What, path: Path, home: Definitions, given: Monitor) -> MonitorAnswer:
-    if given.road is not None:
+def _on_given_drive(
+    what: What, path: Path, definitions: Definitions, settings: MonitorSettings
+) -> MonitorAnswer:
+    if settings.road is not None:
         raise UsageError(f"--road: {path} has the road of its storyboard; omit --road")
-    read: ReadDrive = imported(entries("drives")[path.suffix])
-    found = read(path)
-    set_name, formula = home.specification.set_name, "true"
-    file = DriveFile(None, set_name, formula, found.horizon, {}, {}, {}, found.road, found.drive)
-    answer = _on_drive(what, file, str(path), home, given)
-    return replace(answer, notes=(*answer.notes, found.note))
+    read: ReadDrive = import_entry(entries("drives")[path.suffix])
+    drive = read(path)
+    set_name, formula = definitions.specification.set_name, "true"
+    file = DriveFile(None, set_name, formula, drive.horizon, {}, {}, {}, drive.road, drive.drive)
+    answer = _on_drive(what, file, str(path), definitions, settings)
+    return replace(answer, notes=(*answer.notes, drive.note))
 
 
-def _overruled(file: DriveFile, home: Definitions, values: Mapping[str, Fraction]) -> Iterator[Override]:
-    specification = home.specification
+def _overruled(
+    file: DriveFile, definitions: Definitions, values: Mapping[str, Fraction]
+) -> Iterator[OverrideData]:
+    specification = definitions.specification
     for name, value in file.values.items():
         if values[name] != value:
-            yield Override(what=f"parameter {name}", asked=str(values[name]), said=str(value))
+            yield OverrideData(what=f"parameter {name}", asked=str(values[name]), said=str(value))
     for name, reading in file.options.items():
         if specification.options.get(name) != reading:
-            asked = str(specification.options.get(name))
-            yield Override(what=f"option {name}", asked=asked, said=reading)
+            current = str(specification.options.get(name))
+            yield OverrideData(what=f"option {name}", asked=current, said=reading)
     if specification.set_name != file.set_name:
-        yield Override(what="set", asked=specification.set_name, said=file.set_name)
+        yield OverrideData(what="set", asked=specification.set_name, said=file.set_name)
 
 
 def _on_trace(
     what: What,
     samples: OneTrace,
-    home: Definitions,
+    definitions: Definitions,
     values: Mapping[str, Fraction],
     known: Mapping[str, str],
-    given: Monitor,
+    settings: MonitorSettings,
 ) -> MonitorAnswer:
-    number, query = home.numbered(what, samples.lanes)
+    number, query = definitions.numbered(what, samples.lanes)
     if not samples.names:
         try:
-            roles = cast_of([*samples.lanes], query.vehicles, given.roles or {}, f"{samples.source}: roles")
+            roles = assign_roles(
+                [*samples.lanes], query.vehicles, settings.roles or {}, f"{samples.source}: roles"
+            )
         except InputError as error:
             raise with_causes(error, left_out_in(samples.notes)) from None
         samples = play_samples(samples, roles)
-    lanes = _lanes(home, query, number, samples, known, given)
+    lanes = _lanes(definitions, query, number, samples, known, settings)
     formula = bind(query.formula, samples.road, lanes, values)
     refuse_unmeasured(samples, formula)
-    observed = observe_samples(query.text, formula, samples.batch, given.end)
-    place = _place(samples, home, query, lanes)
-    casts = driven.casts_of(home, query, number, tuple(given.drivers))
-    found = tuple(driven.decisions_on(samples, casts, home, values))
-    notes = (*samples.notes, *answer_where_they_stand(query.text, formula, samples.batch, given.end))
-    return MonitorAnswer(home.library, observed, place, notes, samples.road, found)
+    observed = observe_samples(query.text, formula, samples.batch, settings.end)
+    place = _place(samples, definitions, query, lanes)
+    casts = driven.scenario_casts(definitions, query, number, tuple(settings.drivers))
+    decisions = tuple(driven.decisions_on(samples, casts, definitions, values))
+    notes = (*samples.notes, *note_on_standing(query.text, formula, samples.batch, settings.end))
+    return MonitorAnswer(definitions.library, observed, place, notes, samples.road, decisions)
 
 
 def _place(
     samples: OneTrace,
-    home: Definitions,
+    definitions: Definitions,
     query: Query,
     lanes: Mapping[str, str],
-    overruled: tuple[Override, ...] = (),
-) -> Place:
-    return Place(
+    overruled: tuple[OverrideData, ...] = (),
+) -> MonitoredTraceData:
+    return MonitoredTraceData(
         trace=samples.source,
         start=samples.first,
-        set_name=home.alone.set_name,
+        set_name=definitions.alone.set_name,
         road=samples.road.name,
         lanes=lanes,
         overruled=overruled,
@@ -339,12 +365,12 @@ def _place(
 
 
 def _lanes(
-    home: Definitions,
+    definitions: Definitions,
     query: Query,
     number: int | None,
     samples: OneTrace,
     known: Mapping[str, str],
-    given: Monitor,
+    settings: MonitorSettings,
 ) -> dict[str, str]:
     """A lane for each free lane of the formula: as asked for, as in the file, or a vehicle's."""
     missing = [name for name in query.vehicles if name not in samples.lanes]
@@ -354,10 +380,10 @@ def _lanes(
             f"{', '.join(samples.lanes)}; name other vehicles or another formula"
         )
     at_start = {own: samples.lanes[role] for role, own in samples.names.items()} | dict(samples.lanes)
-    lanes = {**known, **{name: at_start.get(lane, lane) for name, lane in (given.lanes or {}).items()}}
-    scenario = None if number is None else Scenario(number, home.specification.set_name)
+    lanes = {**known, **{name: at_start.get(lane, lane) for name, lane in (settings.lanes or {}).items()}}
+    scenario = None if number is None else Scenario(number, definitions.specification.set_name)
     subject = subject_in(samples.lanes) or SUBJECT
-    usual = subject if scenario is None else lane_owner(home.specification, scenario)
+    usual = subject if scenario is None else lane_owner(definitions.specification, scenario)
     for name in query.lanes:
         if not lanes.get(name):
             lanes[name] = samples.lanes.get(usual, "")

@@ -4,12 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from roadproof.frontends.settings.groups import (
-    Workers,
-    folder_for,
-    map_road,
-    strict_reading,
-)
+from roadproof.frontends.settings.groups import Workers, folder_for, map_road, strict_reading
 from roadproof.runtime.records import dataclass
 
 

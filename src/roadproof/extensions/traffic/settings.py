@@ -6,19 +6,10 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from roadproof.extensions.traffic.readers import LARGEST_SEED, frame_range, mapping_of, seconds_or_zero
 from roadproof.frontends.settings import groups
 from roadproof.frontends.settings.option import extensible, option, output
-from roadproof.frontends.settings.readers import (
-    LARGEST_SEED,
-    decimal,
-    frame_range,
-    items_of,
-    mapping_of,
-    named,
-    seconds,
-    seconds_or_zero,
-    whole,
-)
+from roadproof.frontends.settings.readers import decimal, items_of, named, seconds, whole
 from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
@@ -36,7 +27,7 @@ if TYPE_CHECKING:
 
 @extensible("monitor")
 @dataclass(frozen=True, kw_only=True)
-class Monitor(groups.Definitions, groups.Traces):
+class MonitorSettings(groups.DefinitionsSettings, groups.Traces):
     """Options of ``monitor``."""
 
     sets: tuple[str, ...] = groups.one_set()
@@ -87,7 +78,7 @@ class Monitor(groups.Definitions, groups.Traces):
 
 @extensible("evaluate")
 @dataclass(frozen=True, kw_only=True)
-class Evaluate(groups.Definitions, groups.Sharing, groups.Traces):
+class Evaluate(groups.DefinitionsSettings, groups.Sharing, groups.Traces):
     """Options of ``evaluate``."""
 
     sets: tuple[str, ...] = groups.several_sets("base", "extA", "ext")

@@ -1,54 +1,28 @@
-"""What every answer can do: say its verdicts, show its evidence, be kept, be checked, be looked at."""
+"""The base of all answers: verdicts, evidence, files, checks and pictures."""
+
+from __future__ import annotations
 
 from abc import abstractmethod
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roadproof.errors import UsageError
-from roadproof.evidence.kinds import Evidence
-from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.table import Row, Table
-from roadproof.frontends.report.figures import as_bytes
-from roadproof.frontends.report.sheet import Sheet, as_rows
-from roadproof.runtime.files import write_whole
-from roadproof.runtime.records import dataclass
-from roadproof.verdict import ExitCode, Verdict
-from roadproof.world.length_error import LengthError, length_error_of
-from roadproof.world.road import Road
-from roadproof.world.unread import unread_of_road
 
 if TYPE_CHECKING:
+    from roadproof.evidence.kinds import Evidence
+    from roadproof.evidence.strict import JsonObject
     from roadproof.frontends.api.checking import CheckReport, Solver
+    from roadproof.frontends.api.pictures import Picture
+    from roadproof.frontends.report.sheet import Sheet
+    from roadproof.verdict import ExitCode, Verdict
+    from roadproof.world.length_error import LengthError
+    from roadproof.world.road import Road
 
 
-@dataclass(frozen=True)
-class Picture:
-    """A picture in two formats; a notebook shows it, ``save`` writes it."""
-
-    png: bytes = field(repr=False)
-    svg: bytes = field(repr=False)
-
-    def save(self, path: str | Path) -> Path:
-        """Write it as .png or .svg, by the name's ending. Raises ``UsageError``, ``InputError``."""
-        target = Path(path)
-        if target.suffix not in (".png", ".svg"):
-            raise UsageError(f"save({str(path)!r}): name a file that ends in .png or .svg")
-        write_whole(target, self.png if target.suffix == ".png" else self.svg)
-        return target
-
-    def _repr_png_(self) -> bytes:
-        return self.png
-
-
-def picture(figure: object) -> Picture:
-    """A figure that ``report`` has drawn, in both formats."""
-    return Picture(**as_bytes(figure))
-
-
-class Answer(Table):
+class BaseAnswer(Table):
     """An answer to one question or to many. ``str`` gives it as the terminal prints it."""
 
     @property
@@ -81,11 +55,15 @@ class Answer(Table):
     @property
     def left_out(self) -> tuple[str, ...]:
         """The notes on parts of files that were left out, such as of the map of a road."""
-        return tuple(x for road in self.roads for x in unread_of_road(road))
+        from roadproof.world.not_read import road_not_read_note
+
+        return tuple(x for road in self.roads for x in road_not_read_note(road))
 
     @property
     def length_error(self) -> LengthError | None:
-        """How far lengths in lanes of the road are from those in s; None where it is straight."""
+        """Return how far lengths in lanes of the road are from those in s; None where it is straight."""
+        from roadproof.world.length_error import length_error_of
+
         return length_error_of(self.road)
 
     @property
@@ -100,6 +78,8 @@ class Answer(Table):
 
     def rows(self) -> list[Row]:
         """A row for each thing that was asked."""
+        from roadproof.frontends.report.sheet import as_rows
+
         return as_rows(self._sheet)
 
     @abstractmethod
@@ -121,7 +101,7 @@ class Answer(Table):
         return f"<{type(self).__name__}: {self._counts()}>"
 
     def _counts(self) -> str:
-        """How many verdicts of each kind."""
+        """Return how many verdicts of each kind."""
         return ", ".join(f"{n} {verdict}" for verdict, n in Counter(self.verdicts.values()).items())
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
@@ -149,7 +129,7 @@ class Answer(Table):
         self._write(Path(folder), pictures)
         return Path(folder)
 
-    def check(self, solver: "Solver" = "z3", jobs: int | None = 1) -> "CheckReport":
+    def check(self, solver: Solver = "z3", jobs: int | None = 1) -> CheckReport:
         """Check the evidence again, as ``roadproof check`` does with a folder of it.
 
         Raises ``UsageError`` where there is no evidence, as of UNKNOWN, and of a NONE-WITHIN without a tree;

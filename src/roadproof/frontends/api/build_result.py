@@ -1,15 +1,19 @@
 """Answers as build servers and code hosts read them; the formats come with an extension."""
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import ClassVar, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from roadproof.errors import UsageError
-from roadproof.extension import entries, imported
-from roadproof.frontends.report.cases import Case, whole_case
-from roadproof.verdict import ExitCode
+from roadproof.extension import entries, import_entry
 
-Writer: TypeAlias = Callable[[str, Sequence[Case], ExitCode, Sequence[str]], str]
+if TYPE_CHECKING:
+    from roadproof.frontends.report.cases import Case
+    from roadproof.verdict import ExitCode
+
+Writer: TypeAlias = "Callable[[str, Sequence[Case], ExitCode, Sequence[str]], str]"
 """Makes the text of a file out of a command, its cases, its exit code, and what was asked unusually."""
 
 
@@ -25,7 +29,7 @@ def written(
     known = entries("build_results")
     if format not in known:
         raise UsageError(f"format={format!r}: there is {', '.join(known) or 'none; install an extension'}")
-    write: Writer = imported(known[format])
+    write: Writer = import_entry(known[format])
     return write(command, cases, code, in_force)
 
 
@@ -36,11 +40,11 @@ class BuildResult(ABC):
 
     @abstractmethod
     def cases(self) -> Iterable[Case]:
-        """What was asked, part by part, with places and evidence."""
+        """Return the parts of the question as cases, with places and evidence."""
 
     @property
     def in_force(self) -> Sequence[str]:
-        """What was asked otherwise than by default, in words."""
+        """The settings that differ from the defaults, in words."""
         return ()
 
     @property
@@ -50,9 +54,11 @@ class BuildResult(ABC):
 
     def all_cases(self) -> Iterator[Case]:
         """The cases, and one for the answer as a whole where none of them says why the exit code is not 0."""
-        found = tuple(self.cases())
-        yield from found
-        whole = whole_case(self.command, found, self.exit_code)
+        from roadproof.frontends.report.cases import whole_case
+
+        parts = tuple(self.cases())
+        yield from parts
+        whole = whole_case(self.command, parts, self.exit_code)
         if whole is not None:
             yield whole
 

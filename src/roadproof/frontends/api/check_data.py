@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Annotated, Final, Literal
 
-from roadproof.evidence.answers.shared import Fingerprint, KeptKernel, PlainHeading
+from roadproof.evidence.answers.headings import BaseHeading
+from roadproof.evidence.answers.shared import Fingerprint, KernelField
 from roadproof.evidence.codec import LEFT_OUT, Doc
 from roadproof.evidence.finding import Finding
 from roadproof.runtime.records import dataclass
@@ -19,8 +20,8 @@ class ClaimFinding(Finding):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(PlainHeading):
-    """What evidence shows."""
+class CheckData(BaseHeading):
+    """The findings of a check."""
 
     schema: Literal["roadproof/check/2"] = SCHEMA
     library: Annotated[
@@ -28,7 +29,7 @@ class Answer(PlainHeading):
         Doc("Of the library at hand with the files of --spec, without those beside the evidence."),
     ]
     solver: Annotated[Literal["z3", "cvc5", "coq", "extracted"], Doc("Who was asked about certificates.")]
-    kernel: Annotated[KeptKernel | None, LEFT_OUT] = None
+    kernel: Annotated[KernelField | None, LEFT_OUT] = None
     findings: tuple[ClaimFinding, ...]
     not_checked: Annotated[
         Mapping[str, tuple[str, ...]],

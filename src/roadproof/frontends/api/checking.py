@@ -11,18 +11,19 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, Unpack
 
 from roadproof.engines.prove.properties import find_label
 from roadproof.engines.solve.smt import Satisfiability as SolverAnswer
-from roadproof.engines.solve.smt import ask
+from roadproof.engines.solve.smt import check_sat
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.answer import undecided
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.codec import write
 from roadproof.evidence.files import files_of
-from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict, exit_code, summary
+from roadproof.evidence.finding import Acceptance, Finding, SecondOpinion, exit_code, summary
 from roadproof.evidence.heading import heading
 from roadproof.evidence.kernels import KernelName
-from roadproof.evidence.none_within import Derived, NoneWithinFile
+from roadproof.evidence.none_within import NoneWithinFile
+from roadproof.evidence.none_within_check import Derived
 from roadproof.evidence.strict import JsonObject
-from roadproof.frontends.api import check_data as kept
+from roadproof.frontends.api import check_data
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.settings import work_of
 from roadproof.frontends.api.table import Row, Table
@@ -33,21 +34,22 @@ from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Check
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library, read_specification
-from roadproof.library.words import called_by, legend
+from roadproof.library.words import legend, words_named_in
 from roadproof.questions.checking import QuestionFolder, folders_in, read_folder
-from roadproof.questions.data import QUESTION
-from roadproof.reasons import Reason, Why
+from roadproof.questions.foreign_code import all_foreign_code
+from roadproof.questions.question import QUESTION
+from roadproof.reasons import Reason, ReasonKind
 from roadproof.runtime import pool
 from roadproof.runtime.budget import Effort
-from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
+from roadproof.runtime.cache import evict_old, load_bytes, store_bytes
 from roadproof.runtime.executors import Jobs
-from roadproof.runtime.package_data import program
+from roadproof.runtime.package_data import program_digest
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
     from roadproof.evidence.kernels import KernelAnswer, KernelQuestion
-    from roadproof.frontends.api.questioned import QuestionAnswers
+    from roadproof.frontends.api.question_answers import QuestionAnswers
 
 Solver: TypeAlias = Literal["z3", "cvc5"]
 Kernel: TypeAlias = KernelName
@@ -86,12 +88,12 @@ class CheckReport(Table, BuildResult):
 
     @property
     def accepted(self) -> bool:
-        """Whether there are claims, and every one is accepted."""
+        """Return whether there are claims, and every one is accepted."""
         return bool(self.findings) and all(x.outcome is Acceptance.ACCEPTED for x in self.findings)
 
     @property
     def counts(self) -> dict[Acceptance, int]:
-        """How many claims came out how."""
+        """Return how many claims came out how."""
         return dict(Counter(x.outcome for x in self.findings))
 
     @property
@@ -99,13 +101,14 @@ class CheckReport(Table, BuildResult):
         return exit_code(self.findings, self.strict)
 
     def as_data(self) -> JsonObject:
-        """As the plain data of ``--json``."""
-        answer = kept.Answer(
-            **heading(kept.SCHEMA, self.library),
+        """Return the plain data of ``--json``."""
+        answer = check_data.CheckData(
+            **heading(check_data.SCHEMA, self.library),
             solver=self.solver,
-            kernel=None if self.kernel is None else self.kernel.kept,
+            kernel=None if self.kernel is None else self.kernel.data,
             findings=tuple(
-                kept.ClaimFinding(**vars(x), accepted=x.outcome is Acceptance.ACCEPTED) for x in self.findings
+                check_data.ClaimFinding(**vars(x), accepted=x.outcome is Acceptance.ACCEPTED)
+                for x in self.findings
             ),
             not_checked=self.not_checked,
         )
@@ -130,13 +133,13 @@ class CheckReport(Table, BuildResult):
     def __str__(self) -> str:
         lines = [f"read with {path}" for path in self.specs]
         lines += map(str, self.findings)
-        words = called_by(self.library.select(), (x.claim for x in self.findings))
+        words = words_named_in(self.library.select(), (x.claim for x in self.findings))
         lines += [f"  {line}" for line in legend(words)]
         kernel = [] if self.kernel is None else [str(self.kernel)]
-        asked = "the extracted program" if self.solver == "extracted" else self.solver
+        solver_name = "the extracted program" if self.solver == "extracted" else self.solver
         lines += [f"what {folder} shows ({x.question.kind}):\n{x}" for folder, x in self.views.items()]
         lines += [f"not checked in {folder}: {', '.join(x)}" for folder, x in self.not_checked.items()]
-        return "\n".join([*lines, summary(self.findings, asked), *kernel])
+        return "\n".join([*lines, summary(self.findings, solver_name), *kernel])
 
 
 @takes(Check)
@@ -153,35 +156,39 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
 
 
 def take_over(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
-    """As ``check``, but files are taken over that this version has accepted with these bytes before."""
+    """Check evidence, but take over files that this version has accepted with these bytes before."""
     return _check(paths, Check.of(options), takes_over=True)
 
 
-def _check(paths: Sequence[str | Path], asked: Check, takes_over: bool) -> CheckReport:
+def _check(paths: Sequence[str | Path], settings: Check, takes_over: bool) -> CheckReport:
     if not paths:
         raise UsageError("check() needs at least one file or folder of evidence")
-    if asked.kernel is None:
+    if settings.kernel is None:
         # A solver that is missing is said once, before any work.
-        ask("(set-logic QF_UF)(check-sat)", asked.solver)
+        check_sat("(set-logic QF_UF)(check-sat)", settings.solver)
     else:
         from roadproof.evidence.kernels import kernels
 
-        kernels().find(asked.kernel)
-    named = tuple(Path(x) for x in asked.specs)
+        kernels().require_installed(settings.kernel)
+    named = tuple(Path(x) for x in settings.specs)
     library = load_library(named)
     there = _Evidence.read([Path(x) for x in paths], named)
     given = there.given
-    answered, ruled = (None, {}) if asked.kernel is None else _put_to_kernel(asked.kernel, given, asked)
-    work = [_Job(path, beside, ruled.get(str(path)), takes_over) for path, beside in given]
-    judge = partial(_examine, asked.solver, work_of(asked))
-    answers = pool.in_order(pool.work(judge, work, asked.jobs, _doubt, asked.progress, "files"))
-    found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
+    answered, opinions = (
+        (None, {}) if settings.kernel is None else _put_to_kernel(settings.kernel, given, settings)
+    )
+    work = [_FileJob(path, beside, opinions.get(str(path)), takes_over) for path, beside in given]
+    judge = partial(_examine, settings.solver, work_of(settings))
+    answers = pool.in_order(
+        pool.work(judge, work, settings.jobs, _unknown_finding, settings.progress, "files")
+    )
+    by_path = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
     beside = tuple(dict.fromkeys(path for x in there.folders for path in x.specs))
-    findings = [*there.problems, *(found[file] for file in there.alone)]
+    findings = [*there.problems, *(by_path[file] for file in there.alone)]
     left: dict[str, tuple[str, ...]] = {}
     views: dict[str, QuestionAnswers[Any]] = {}
     for x in there.folders:
-        shown = {name: x.finding(name, found[file]) for file, name in x.files.items()}
+        shown = {name: x.finding(name, by_path[file]) for file, name in x.files.items()}
         findings += [*shown.values(), *x.undecided, *x.problems]
         if x.question.kind not in LISTS:
             views[str(x.folder)] = _accepted_view(x, shown)
@@ -189,14 +196,14 @@ def _check(paths: Sequence[str | Path], asked: Check, takes_over: bool) -> Check
         findings += tables
         if others:
             left[str(x.folder)] = others
-    make_room(CHECKED)
-    solver = asked.kernel or asked.solver
-    return CheckReport(tuple(findings), solver, library, beside, answered, left, views, asked.strict)
+    evict_old(CHECKED)
+    solver = settings.kernel or settings.solver
+    return CheckReport(tuple(findings), solver, library, beside, answered, left, views, settings.strict)
 
 
 @dataclass(frozen=True)
 class _Evidence:
-    """What is in files and folders: ``folders`` of answers, and files ``alone``, read with ``specs``.
+    """Evidence in files and folders: ``folders`` of answers, and files ``alone``, read with ``specs``.
 
     ``problems``: links, and folders whose question cannot be read.
     """
@@ -217,7 +224,7 @@ class _Evidence:
                 folders.append(read_folder(place, specs))
             except RoadproofError as error:
                 where = str(place / QUESTION)
-                damaged.append(Finding(where, "", Acceptance.REJECTED, Why.TOLD(error)))
+                damaged.append(Finding(where, "", Acceptance.REJECTED, ReasonKind.TOLD(error)))
         alone, links = files_of(paths, places)
         return _Evidence(tuple(folders), tuple(alone), (*damaged, *links), specs)
 
@@ -229,38 +236,38 @@ class _Evidence:
         return [*alone, *((file, (*self.specs, *x.specs_of(name))) for x, file, name in answered)]
 
 
-def _accepted_view(found: QuestionFolder, shown: Mapping[str, Finding]) -> "QuestionAnswers[Any]":
+def _accepted_view(folder: QuestionFolder, shown: Mapping[str, Finding]) -> "QuestionAnswers[Any]":
     """The answers of a folder, those in doubt whose evidence is not accepted."""
     from roadproof.frontends.api.rebuilding import rebuilt  # which takes long to import
 
     refused = {n: x.reason for n, x in shown.items() if x.outcome is not Acceptance.ACCEPTED}
-    doubted = {name: undecided(found.answers[name].claim, reason) for name, reason in refused.items()}
-    return rebuilt(replace(found, answers={**found.answers, **doubted}))
+    doubted = {name: undecided(folder.answers[name].claim, reason) for name, reason in refused.items()}
+    return rebuilt(replace(folder, answers={**folder.answers, **doubted}))
 
 
-def _tables(found: QuestionFolder) -> tuple[list[Finding], tuple[str, ...]]:
+def _tables(folder: QuestionFolder) -> tuple[list[Finding], tuple[str, ...]]:
     """A finding for each table of a folder that its answers do not make; and what is not compared."""
     from roadproof.frontends.api.rebuilding import rebuilt  # what makes tables takes long to import
 
-    others = {x: found.folder / x for x in found.others}
+    others = {x: folder.folder / x for x in folder.others}
     if not any(x.endswith((".csv", ".dot", ".xml")) for x in others):
-        return [], found.others
-    made = rebuilt(found).files(False)
+        return [], folder.others
+    made = rebuilt(folder).files(False)
     wrong = [x for x, content in made.items() if x in others and others[x].read_bytes() != content]
-    rejected = [Finding(str(others[x]), "", Acceptance.REJECTED, Why.OTHER_TABLE()) for x in wrong]
-    return rejected, tuple(x for x in found.others if x not in made)
+    rejected = [Finding(str(others[x]), "", Acceptance.REJECTED, ReasonKind.OTHER_TABLE()) for x in wrong]
+    return rejected, tuple(x for x in folder.others if x not in made)
 
 
 def _put_to_kernel(
-    kernel: Kernel, given: _Given, asked: Check
-) -> tuple["KernelAnswer", dict[str, OtherVerdict]]:
-    """What a kernel says of all files, and of each by its path."""
-    from roadproof.evidence.kernels import kernels, ruled
+    kernel: Kernel, given: _Given, settings: Check
+) -> tuple["KernelAnswer", dict[str, SecondOpinion]]:
+    """Return the rulings of a kernel on all files, and on each by its path."""
+    from roadproof.evidence.kernels import kernels, second_opinion
 
-    answered = kernels().put(_asked(given), asked.jobs, asked.progress, kernel)
+    answered = kernels().check(_kernel_questions(given), settings.jobs, settings.progress, kernel)
     names = [(str(path), name) for path, name in kernels().names_of(path for path, _ in given).items()]
-    said = answered.rulings
-    return answered, {path: ruled(said[name]) for path, name in names if name in said}
+    rulings = answered.rulings
+    return answered, {path: second_opinion(rulings[name]) for path, name in names if name in rulings}
 
 
 @dataclass(frozen=True)
@@ -286,13 +293,13 @@ def write_sources(
 
     named = tuple(Path(x) for x in specs)
     given = _Evidence.read([Path(x) for x in paths], named).given
-    questions = _asked(given)
+    questions = _kernel_questions(given)
     reasons = kernels().write(questions, Path(folder), jobs, kernel)
     by_name = {name: path for path, name in kernels().names_of(path for path, _ in given).items()}
     return Sources(len(questions) - len(reasons), {by_name[x]: reason for x, reason in reasons.items()})
 
 
-def _asked(given: _Given) -> list["KernelQuestion"]:
+def _kernel_questions(given: _Given) -> list["KernelQuestion"]:
     from roadproof.evidence.kernels import KernelQuestion, kernels
 
     names = kernels().names_of(path for path, _ in given)
@@ -300,27 +307,28 @@ def _asked(given: _Given) -> list["KernelQuestion"]:
 
 
 @dataclass(frozen=True)
-class _Job:
+class _FileJob:
     """A file with the specification files that it is read with, and what Coq said of it."""
 
     path: Path
     specs: tuple[Path, ...]
-    ruled: OtherVerdict | None
+    opinion: SecondOpinion | None
     takes_over: bool = False
 
     def key(self, solver: str) -> bytes:
-        """What the finding depends on: the bytes of the files, the solver and the program."""
+        """Return a key of all that the finding depends on: bytes of files, solver, program and packages."""
         texts = (read_specification(x).text.encode() for x in self.specs)
         digests = (sha256(x).hexdigest() for x in (self.path.read_bytes(), *texts))
-        return "|".join((solver, program(), *digests)).encode()
+        packages = (y for x in all_foreign_code() for y in x)
+        return "|".join((solver, program_digest(), *digests, *packages)).encode()
 
 
-def _doubt(job: _Job, reason: Reason) -> Finding:
+def _unknown_finding(job: _FileJob, reason: Reason) -> Finding:
     """The finding on a file that nothing is known of."""
     return Finding(str(job.path), "", Acceptance.UNDECIDED, reason)
 
 
-def _examine(solver: str, effort: Effort, job: _Job) -> Finding:
+def _examine(solver: str, effort: Effort, job: _FileJob) -> Finding:
     """Check one file by what its schema says that it is."""
 
     def derive(file: NoneWithinFile, library: Library) -> Derived:
@@ -329,20 +337,20 @@ def _examine(solver: str, effort: Effort, job: _Job) -> Finding:
         return derive_programs(file, library)
 
     def answer(script: str) -> SolverAnswer:
-        return ask(script, solver, effort.meter())
+        return check_sat(script, solver, effort.meter())
 
     def examine() -> Finding:
-        return Checker(load_library(job.specs), answer, find_label, job.ruled, derive).check(job.path)
+        return Checker(load_library(job.specs), answer, find_label, job.opinion, derive).check(job.path)
 
-    if job.ruled is not None or not job.path.is_file():
+    if job.opinion is not None or not job.path.is_file():
         return examine()
     key = job.key(solver)
     name = f"checked-{sha256(key).hexdigest()[:32]}"
-    known = kept_bytes(CHECKED, name, key) if job.takes_over else None
+    known = load_bytes(CHECKED, name, key) if job.takes_over else None
     if known is not None:
-        found: Finding = pickle.loads(known)
-        return replace(found, where=str(job.path))
-    found = examine()
-    if found.outcome is Acceptance.ACCEPTED:
-        keep_bytes(CHECKED, name, pickle.dumps(found), key)
-    return found
+        finding: Finding = pickle.loads(known)
+        return replace(finding, where=str(job.path))
+    finding = examine()
+    if finding.outcome is Acceptance.ACCEPTED:
+        store_bytes(CHECKED, name, pickle.dumps(finding), key)
+    return finding

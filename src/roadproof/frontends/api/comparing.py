@@ -1,31 +1,34 @@
 """Two formulas side by side."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import ClassVar, Unpack
+from typing import TYPE_CHECKING, ClassVar, Unpack
 
-from roadproof.engines.search.question import SearchOptions, exists
+from roadproof.engines.setting import SearchOptions, exists_mode
 from roadproof.errors import UsageError
-from roadproof.evidence import answer as answers
-from roadproof.evidence.kinds import Evidence
-from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
-from roadproof.frontends.api.pictures import drive_pictures
-from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
+from roadproof.frontends.api.question_answers import QuestionAnswers, evidence_of
 from roadproof.frontends.api.settings import setting, work_of
 from roadproof.frontends.report import compare as compare_report
-from roadproof.frontends.report.sheet import Sheet
-from roadproof.frontends.settings.keywords import CompareKeywords
 from roadproof.frontends.settings.option import takes
-from roadproof.frontends.settings.questions import Compare
-from roadproof.library.compose import taken_from
+from roadproof.frontends.settings.questions import CompareSettings
+from roadproof.library.compose import in_spec_set
 from roadproof.questions.basis import Basis
 from roadproof.questions.compare import CompareQuestion, Comparison, Direction, direction_named
-from roadproof.runtime.cost import Cost
 from roadproof.runtime.progress import Listener, listening
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
-from roadproof.world.road import Road
+
+if TYPE_CHECKING:
+    from roadproof.evidence import answer as answers
+    from roadproof.evidence.kinds import Evidence
+    from roadproof.frontends.api.pictures import Picture
+    from roadproof.frontends.report.sheet import Sheet
+    from roadproof.frontends.settings.keywords import CompareKeywords
+    from roadproof.runtime.budget import Cost
+    from roadproof.world.road import Road
 
 
 @dataclass(frozen=True, repr=False)
@@ -37,7 +40,7 @@ class ComparisonAnswer(QuestionAnswers[Comparison]):
 
     @property
     def comparison(self) -> Comparison:
-        """Both directions."""
+        """The answers of both directions."""
         return self.view
 
     @property
@@ -66,14 +69,17 @@ class ComparisonAnswer(QuestionAnswers[Comparison]):
         return compare_report.sheet_of(self.view)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        """Yield a picture of each drive that separates the claims."""
         drives = ((name, x.drive) for name, x in self.view.directions.items())
+        from roadproof.frontends.api.pictures import drive_pictures  # here: few answers are drawn
+
         return drive_pictures(drives, self.library)
 
     def __str__(self) -> str:
         return compare_report.as_text(self.view, self.question.basis.specification)
 
 
-@takes(Compare)
+@takes(CompareSettings)
 def compare(
     first: What,
     second: What,
@@ -83,7 +89,7 @@ def compare(
     stage: Listener | None = None,
     **options: Unpack[CompareKeywords],
 ) -> ComparisonAnswer:
-    """Which of two formulas implies the other.
+    """Return which of two formulas implies the other.
 
     Both directions are asked at once where there are two cores, or as many ``jobs`` as are said, each with
     this ``effort`` and ``timeout``; ``each`` is told of a direction ("first implies second" or the reverse)
@@ -91,20 +97,20 @@ def compare(
     all. Where ``using`` has two spec sets, the second formula is of the second one. Drives that tell the two
     apart are looked for as by ``witness``. Raises as that does.
     """
-    given = Compare.of(options)
+    given = CompareSettings.of(options)
     home = definitions_of(using)
     if len(home.sets) > 2:
         raise UsageError(f"{len(home.sets)} spec sets are given: two formulas have at most two")
     other = home.sets[-1]
     query = replace(home, specification=home.specification.in_set(other)).read(second)
-    within = exists(setting(home, given), SearchOptions(engine=given.engine, solver=given.solver))
+    within = exists_mode(setting(home, given), SearchOptions(engine=given.engine, solver=given.solver))
     basis = Basis(home.specification, values=home.all_values(), effort=work_of(given))
-    against = taken_from(home.specification, query, other)
+    against = in_spec_set(home.specification, query, other)
     question = CompareQuestion(basis, home.read(first), against, other, within)
 
-    def tell(name: str, answer: answers.Answer, cost: Cost) -> None:
+    def tell(name: str, answer: answers.ClaimAnswer, cost: Cost) -> None:
         if each is not None:
             each(direction_named(name), question.direction(name, answer))
 
     with listening(stage):
-        return ComparisonAnswer.settled(question, given, tell)
+        return ComparisonAnswer.decide(question, given, tell)

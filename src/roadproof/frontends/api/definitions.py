@@ -1,27 +1,31 @@
-"""What questions are asked of: definitions, readings and values of parameters."""
+"""The definitions, readings and parameter values that questions are about."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import field
 from fractions import Fraction
 from numbers import Integral
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from roadproof.errors import InputError, TextError, UsageError
-from roadproof.frontends.api.phrases import Phrase, Term, call
-from roadproof.library import diagnose as texts
 from roadproof.library.bind import Number, exact, values_with
-from roadproof.library.diagnose import Diagnostic, checked_library
 from roadproof.library.elaborate import read_claim
+from roadproof.library.loading import bundled_library
 from roadproof.library.roles import with_vehicles
 from roadproof.library.scenario_references import read_numbers, read_query
 from roadproof.library.scenarios import are_numbers
-from roadproof.library.specification import Library, Query, Source, Specification, unknown
+from roadproof.library.specification import Library, Query, Source, Specification, unknown_name
 from roadproof.library.words import Words, words_of
 from roadproof.runtime.records import dataclass
 
+if TYPE_CHECKING:
+    from roadproof.frontends.api.phrases import Phrase, Term
+    from roadproof.library.diagnose import Diagnostic
+
 # A scenario by number, a formula as text or built with operators, or one that was read before.
-What: TypeAlias = int | str | Phrase | Query
+What: TypeAlias = "int | str | Phrase | Query"
 Among: TypeAlias = int | str | Iterable[int] | None
 
 
@@ -47,7 +51,9 @@ class Definitions:
             raise AttributeError(name)
         definitions, signals = self.specification.definitions, self.library.signals
         if name not in definitions and name not in signals:
-            raise AttributeError(unknown("definition", name, (*definitions, *signals)))
+            raise AttributeError(unknown_name("definition", name, (*definitions, *signals)))
+
+        from roadproof.frontends.api.phrases import call
 
         def apply(*arguments: Term) -> Phrase:
             return call(name, *arguments)
@@ -87,7 +93,7 @@ class Definitions:
         return self.numbered(what)[1]
 
     def numbered(self, what: What, vehicles: Collection[str] = ()) -> tuple[int | None, Query]:
-        """As ``read``, with the number of the scenario where one was asked for by number.
+        """Read a formula; return it with the scenario's number where it is given by number.
 
         ``vehicles`` need not be declared.
         """
@@ -103,22 +109,24 @@ class Definitions:
         match what:
             case Query():
                 return None, what
-            case Phrase():
-                return None, read_claim(self.specification, str(what))
-            case _ if isinstance(what, Integral | str) and not isinstance(what, bool):
+            case _ if isinstance(what, Integral | str) and not isinstance(what, bool):  # open: a user's value
                 return read_query(self.specification, str(what))
-            case _:
+            case _:  # open: a user's value
+                from roadproof.frontends.api.phrases import Phrase  # here: most are numbers and texts
+
+                if isinstance(what, Phrase):
+                    return None, read_claim(self.specification, str(what))
                 raise UsageError(
                     f"{what!r} is not a formula: give a number, a text, or a formula built with operators"
                 )
 
     def each(self, what: Iterable[What]) -> list[What]:
         """Scenarios and formulas one by one, where a text may be a list of numbers such as ``"1,3-8"``."""
-        found: list[What] = []
+        items: list[What] = []
         for x in what:
             is_list = isinstance(x, str) and are_numbers(x) and bool({",", "-"} & {*x})
-            found += read_numbers(self.specification, str(x)) if is_list else [x]
-        return found
+            items += read_numbers(self.specification, str(x)) if is_list else [x]
+        return items
 
     def among(self, numbers: Among) -> tuple[int, ...] | None:
         """Scenarios by number: ``"1-8,12"``, 4, or a sequence; None for all. Raises ``InputError``."""
@@ -130,7 +138,7 @@ class Definitions:
 
 
 def definitions_of(using: Definitions | None) -> Definitions:
-    """What a question is asked of: base where None. Raises ``UsageError`` for anything but definitions."""
+    """Return the definitions of a question, base for None. Raises ``UsageError`` for anything else."""
     if using is None:
         return load()
     if not isinstance(using, Definitions):
@@ -159,8 +167,20 @@ def load(
         raise UsageError(f"specs={specs!r}: write a list, such as specs=[{specs!r}]")
     if len(set(chosen)) < len(chosen):
         raise UsageError(f"load({', '.join(map(repr, chosen))}): name different spec sets")
-    library = checked_library(_source(k, spec) for k, spec in enumerate(specs, 1))
+    library = library_with([_source(k, spec) for k, spec in enumerate(specs, 1)])
     return chosen_in(library, chosen, options, params)
+
+
+def library_with(files: Sequence[Path | Source]) -> Library:
+    """Return the bundled library with the texts of a user on top, after a check of all their definitions.
+
+    Raises ``TextError``, ``TextErrors`` for several mistakes, ``InputError``.
+    """
+    if not files:
+        return bundled_library()
+    from roadproof.library.diagnose import checked_library  # here: most questions need no text of a user
+
+    return checked_library(files)
 
 
 def chosen_in(
@@ -190,7 +210,7 @@ def values_of(library: Library, params: Mapping[str, Number], before: str = "") 
     values: dict[str, Fraction] = {}
     for name, value in params.items():
         if name not in library.parameters:
-            raise InputError(f"{before}{name}={value}: {unknown('parameter', name, library.parameters)}")
+            raise InputError(f"{before}{name}={value}: {unknown_name('parameter', name, library.parameters)}")
         values[name] = exact(f"{before}{name}", value, library.parameters[name].unit)
     try:
         values_with(library, values)
@@ -209,6 +229,8 @@ def diagnose(text: str, using: Definitions | None = None, formula: bool = False)
     >>> [(x.line, x.column, x.message) for x in diagnose("v_lon(SV) > 3", formula=True)]
     [(1, 1, 'm/s and no unit cannot be compared')]
     """
+    from roadproof.library import diagnose as texts
+
     home = definitions_of(using)
     if formula:
         return texts.diagnose_claim(text, home.specification)

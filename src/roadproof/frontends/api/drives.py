@@ -1,40 +1,28 @@
 """Drives for scenarios and formulas."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar, Unpack
+from typing import TYPE_CHECKING, ClassVar, Unpack
 
-from roadproof.engines.search.question import SearchOptions, Setting, exists, pose
+from roadproof.engines.setting import SearchOptions, Setting, exists_mode
 from roadproof.errors import UsageError
-from roadproof.evidence import answer as answers
-from roadproof.evidence.claim import Claim
 from roadproof.evidence.codec import write
-from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.kinds import Evidence
-from roadproof.evidence.strict import JsonObject
-from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
-from roadproof.frontends.api.pictures import drive_pictures
-from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.api.settings import searches_of, setting, work_of
-from roadproof.frontends.report.animations import animations
-from roadproof.frontends.report.cases import Case
-from roadproof.frontends.report.numbers import took
-from roadproof.frontends.report.question_cases import search_cases
-from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.report.witness import Views, as_line, every_view, sheet_of
-from roadproof.frontends.settings.keywords import WitnessKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Witness
 from roadproof.frontends.settings.readers import formats_in
-from roadproof.library.specification import Library
 from roadproof.questions.basis import Basis
-from roadproof.questions.question import walk
-from roadproof.questions.settle import look_up
+from roadproof.questions.decide import look_up
+from roadproof.questions.question import walk_batch
 from roadproof.questions.store import keep_all
 from roadproof.questions.witness import (
     NONE_WITHIN,
@@ -44,13 +32,24 @@ from roadproof.questions.witness import (
     WitnessView,
     name_of,
 )
-from roadproof.runtime import pool
-from roadproof.runtime.cost import NO_COST, Cost, sum_of
-from roadproof.runtime.files import make_folder, write_whole
+from roadproof.runtime.budget import NO_COST, Cost, sum_of
+from roadproof.runtime.files import make_folder, write_atomic
 from roadproof.runtime.progress import Listener, listening
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict, exit_code
-from roadproof.world.road import Road
+
+if TYPE_CHECKING:
+    from roadproof.evidence import answer as answers
+    from roadproof.evidence.claim import Claim
+    from roadproof.evidence.judged import JudgedDrive
+    from roadproof.evidence.kinds import Evidence
+    from roadproof.evidence.strict import JsonObject
+    from roadproof.frontends.api.pictures import Picture
+    from roadproof.frontends.report.cases import Case
+    from roadproof.frontends.report.sheet import Sheet
+    from roadproof.frontends.settings.keywords import WitnessKeywords
+    from roadproof.library.specification import Library
+    from roadproof.world.road import Road
 
 
 @dataclass(frozen=True)
@@ -67,13 +66,13 @@ class DriveFolder:
         samples = self.folder / f"{name}.csv"
         former = samples.read_bytes() if samples.is_file() else b""
         for ending, content in self.views.of(judged, self.library):
-            write_whole(self.folder / f"{name}{ending}", content)
+            write_atomic(self.folder / f"{name}{ending}", content)
         if samples.read_bytes() != former:  # the other files are those of a former drive
             for ending in {*every_view().endings} - {*self.views.endings}:
                 (self.folder / f"{name}{ending}").unlink(missing_ok=True)
 
     def lacks(self, name: str) -> bool:
-        """Whether any is not there."""
+        """Return whether any is not there."""
         return any(not (self.folder / f"{name}{ending}").exists() for ending in self.views.endings)
 
 
@@ -86,6 +85,8 @@ class Witnesses(QuestionAnswers[WitnessView], BuildResult):
     command: ClassVar[str] = "witness"
 
     def cases(self) -> Iterator[Case]:
+        from roadproof.frontends.report.question_cases import search_cases  # here: for build servers alone
+
         return search_cases((x, self._file(name, x)) for name, x in self.named.items())
 
     def _file(self, name: str, result: SearchResult) -> Path | None:
@@ -95,7 +96,7 @@ class Witnesses(QuestionAnswers[WitnessView], BuildResult):
 
     @cached_property
     def named(self) -> dict[str, SearchResult]:
-        """What came out, by name; what was asked twice is there once."""
+        """The results by name; a repeated formula occurs once."""
         return {name: self._priced(name) for name in self.question.named}
 
     def _priced(self, name: str) -> SearchResult:
@@ -104,7 +105,7 @@ class Witnesses(QuestionAnswers[WitnessView], BuildResult):
 
     @property
     def outcomes(self) -> tuple[SearchResult, ...]:
-        """What came out, in the order in which it was asked."""
+        """The results in the order of the request."""
         return tuple(self.named[name] for name in self.question.names)
 
     @property
@@ -146,13 +147,13 @@ class Witnesses(QuestionAnswers[WitnessView], BuildResult):
             question, known = replace(self.question, tasks=tasks), dict(self.found.answers)
             engines = Engines(question.work)
 
-            def find(name: str, claim: Claim) -> answers.Answer:
+            def find(name: str, claim: Claim) -> answers.ClaimAnswer:
                 if name not in known:
-                    known[name], _ = engines.settle(claim)
+                    known[name], _ = engines.answer_claim(claim)
                 return known[name]
 
             for batch in question.batches(known):
-                list(walk(batch, find))
+                list(walk_batch(batch, find))
             keep_all(folder, question, known)
         self._add_files(folder, pictures)
 
@@ -163,11 +164,13 @@ class Witnesses(QuestionAnswers[WitnessView], BuildResult):
 
     @property
     def drive_names(self) -> Iterator[tuple[str, JudgedDrive]]:
-        """Each drive with the name of its file."""
+        """Yield each drive with the name of its file."""
         for name, result in self.named.items():
             yield from zip(self.question.claim_names(name), result.drives, strict=False)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        from roadproof.frontends.api.pictures import drive_pictures  # here: few answers are drawn
+
         return drive_pictures(((f"drive-{k}", x) for k, x in enumerate(self.drives, 1)), self.library)
 
     def __str__(self) -> str:
@@ -176,9 +179,11 @@ class Witnesses(QuestionAnswers[WitnessView], BuildResult):
 
     @property
     def summary(self) -> str:
-        """How many were found, in words."""
-        found = sum(x.verdict is Verdict.WITNESSED for x in self.outcomes)
-        return f"{found} of {len(self.outcomes)} witnessed{took(self.seconds or None)}"
+        """Return how many were found, in words."""
+        from roadproof.frontends.report.numbers import took
+
+        count = sum(x.verdict is Verdict.WITNESSED for x in self.outcomes)
+        return f"{count} of {len(self.outcomes)} witnessed{took(self.seconds or None)}"
 
 
 @takes(Witness)
@@ -205,7 +210,7 @@ def witness(
     <Verdict.WITNESSED: 'WITNESSED'>
     """
     given = Witness.of(options)
-    question = drives_asked(what, definitions_of(using), given)
+    question = witness_question(what, definitions_of(using), given)
     with listening(stage):
         return witness_all(question, given)
 
@@ -217,19 +222,19 @@ def known_drives(numbers: Sequence[int], using: Definitions) -> dict[int, Judged
     """
     if not numbers:
         return {}
-    question = drives_asked(numbers, using, Witness())
-    found = look_up(question)
-    results = (question.result(name, found) for name in question.named)
+    question = witness_question(numbers, using, Witness())
+    answers = look_up(question)
+    results = (question.result(name, answers) for name in question.named)
     return {x.scenario: x.drives[0] for x in results if x.scenario is not None and x.drives}
 
 
-def drives_asked(what: Sequence[What], using: Definitions, given: Witness) -> WitnessQuestion:
+def witness_question(what: Sequence[What], using: Definitions, given: Witness) -> WitnessQuestion:
     """The question that ``witness`` asks. Raises as that does."""
     each = using.each(what)
     home = given.modified(using, what=each)
     options = SearchOptions(given.objective, given.engine, given.solver)
     place = setting(home, given)
-    within, trees = exists(place, options), given.out is not None
+    within, trees = exists_mode(place, options), given.out is not None
     tasks = tuple(
         SearchTask(
             name_of(number, x.scenario, x.specification.set_name),
@@ -253,6 +258,8 @@ def drives_asked(what: Sequence[What], using: Definitions, given: Witness) -> Wi
 def _refuse_early(task: SearchTask, place: Setting) -> None:
     """Raises ``UsageError`` for one of several formulas that cannot be asked, before others are searched."""
     if task.scenario is None:
+        from roadproof.engines.search.question import pose  # here: it encodes the motion
+
         try:
             pose(task.specification.library, task.query, place)
         except UsageError as error:
@@ -262,27 +269,29 @@ def _refuse_early(task: SearchTask, place: Setting) -> None:
 def witness_all(
     question: WitnessQuestion, given: Witness, each: Callable[[str, SearchResult], None] | None = None
 ) -> Witnesses:
-    """As ``witness``; ``each`` is told of every result under its name."""
+    """Search drives as ``witness`` does; ``each`` is called with every result and its name."""
     views = views_of(given)
-    found = Witnesses.settled(question, given, None if each is None else _Teller(question, each))
-    if found.folder is not None:
-        beside = DriveFolder(found.folder, found.library, views)
-        left = [x for x in found.drive_names if beside.lacks(x[0])]
+    witnesses = Witnesses.decide(question, given, None if each is None else _Teller(question, each))
+    if witnesses.folder is not None:
+        from roadproof.runtime import pool  # here: most answers are written nowhere
+
+        beside = DriveFolder(witnesses.folder, witnesses.library, views)
+        left = [x for x in witnesses.drive_names if beside.lacks(x[0])]
         with closing(pool.work(beside, left, given.jobs, None, given.progress, "drives")) as done:
             list(done)
-    return found
+    return witnesses
 
 
 @dataclass
 class _Teller:
-    """Tells of a search once all its claims are answered."""
+    """A listener that reports a search once all its claims are answered."""
 
     question: WitnessQuestion
     each: Callable[[str, SearchResult], None]
-    known: dict[str, answers.Answer] = field(default_factory=dict)
+    known: dict[str, answers.ClaimAnswer] = field(default_factory=dict)
     cost: dict[str, Cost] = field(default_factory=dict)
 
-    def __call__(self, name: str, answer: answers.Answer, cost: Cost) -> None:
+    def __call__(self, name: str, answer: answers.ClaimAnswer, cost: Cost) -> None:
         search = self.question.search_named(name)
         self.known[name] = answer
         self.cost[search] = sum_of([self.cost.get(search, NO_COST), cost])
@@ -294,13 +303,15 @@ def views_of(given: Witness) -> Views:
     """The files that are wanted beside each drive. Raises ``UsageError``, ``MissingSolverError``."""
     if not given.animate:
         return Views(given.pictures, ())
+    from roadproof.frontends.report.animations import animations
+
     known = animations()
-    wanted = formats_in(given.animate, known)
+    formats = formats_in(given.animate, known)
     if given.out is None:
-        raise UsageError(f"animate={','.join(wanted)}: name a folder for the animations with --out DIR")
-    for name in wanted:
+        raise UsageError(f"animate={','.join(formats)}: name a folder for the animations with --out DIR")
+    for name in formats:
         known[name].need()
-    return Views(given.pictures, tuple(wanted))
+    return Views(given.pictures, tuple(formats))
 
 
 def files_written(

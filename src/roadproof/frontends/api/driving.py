@@ -1,5 +1,7 @@
 """Drives that are given, not looked for: motions out of pieces, judged as all others are."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Unpack
@@ -13,8 +15,8 @@ from roadproof.frontends.settings import questions as settings
 from roadproof.frontends.settings.keywords import MotionKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.value_types import RoadLike
-from roadproof.library.bind import Number, exact, telling_values, values_with
-from roadproof.library.roles import cast_of
+from roadproof.library.bind import Number, exact, used_values, values_with
+from roadproof.library.roles import assign_roles
 from roadproof.library.scenarios import LANE, Scenario, name_of, vehicles_of
 from roadproof.world.drive import Drive, Motion, pieces_of
 from roadproof.world.signals import KINDS
@@ -22,7 +24,7 @@ from roadproof.world.signals import KINDS
 _ALONG, _ACROSS = ("s", "m/s^2", "m/s^3"), ("s", "m/s^2")
 
 
-@takes(settings.Motion)
+@takes(settings.MotionSettings)
 def motion(
     s: Number,
     d: Number,
@@ -32,7 +34,7 @@ def motion(
     across: Iterable[Sequence[Number]] = (),
     **box: Unpack[MotionKeywords],
 ) -> Motion:
-    """How a vehicle moves: where its front-left corner is at time 0 (m) and how fast (m/s), and what follows.
+    """Return the motion of a vehicle from the place (m) and speed (m/s) of its front-left corner at time 0.
 
     ``along``: durations (s), each with the acceleration at its start (m/s^2) and the jerk (m/s^3), one after
     the other; ``across``: durations with an acceleration. After them there is none. ``length``, ``width`` (m)
@@ -42,7 +44,7 @@ def motion(
     >>> motion(0, 2.6, 30, along=[(1, 0, -4), (2, -4, 0)]).pieces[1].a_lon
     Fraction(-4, 1)
     """
-    given = settings.Motion.of(box)
+    given = settings.MotionSettings.of(box)
     if given.kind is not None and given.kind not in KINDS:
         raise UsageError(f"kind={given.kind!r}: write {', '.join(KINDS)}, or leave it out")
     try:
@@ -65,14 +67,14 @@ def motion(
 
 
 def _read(name: str, entries: Iterable[Sequence[Number]], units: Sequence[str]) -> list[list[Fraction]]:
-    found = []
+    rows = []
     for entry in entries:
         if isinstance(entry, str) or len(entry) != len(units):
             raise UsageError(
                 f"{name}: {entry!r} is not an entry: each has {len(units)} numbers, {', '.join(units)}"
             )
-        found.append([exact(name, value, unit) for value, unit in zip(entry, units, strict=True)])
-    return found
+        rows.append([exact(name, value, unit) for value, unit in zip(entry, units, strict=True)])
+    return rows
 
 
 def drive(
@@ -92,7 +94,8 @@ def drive(
     Limits of vehicles are not asked for (``judge.replay.first_breach`` is). Raises ``InputError`` with the
     judge's reason where it does not hold, ``UsageError``, ``TextError``.
     """
-    from roadproof.engines.search.question import assignments, usual_road
+    from roadproof.engines.search.question import assignments
+    from roadproof.engines.search.usual_road import usual_road
 
     home = definitions_of(using)
     for name, moved in vehicles.items():
@@ -100,12 +103,14 @@ def drive(
             raise UsageError(f"vehicles[{name!r}]={moved!r}: write what rp.motion returns")
     scenario, query = home.numbered(what, vehicles)
     if scenario is not None and not {*query.vehicles} <= {*vehicles}:
-        roles = cast_of([*vehicles], query.vehicles, {}, "drive: vehicles")
+        roles = assign_roles([*vehicles], query.vehicles, {}, "drive: vehicles")
         known = vehicles_of(home.specification, Scenario(scenario, home.specification.set_name))
-        query = home.numbered(f"{name_of(scenario)}({', '.join((*roles.own(known), LANE))})", vehicles)[1]
+        query = home.numbered(
+            f"{name_of(scenario)}({', '.join((*roles.names_in_file(known), LANE))})", vehicles
+        )[1]
     place = usual_road(query.formula) if road is None else as_road(road)
     end = positive("horizon", horizon, "s")
-    told = telling_values(home.library, query.formula, values_with(home.library, home.values))
+    parameters = used_values(home.library, query.formula, values_with(home.library, home.values))
     try:
         moving = Drive(vehicles)
     except ValueError as error:
@@ -113,9 +118,9 @@ def drive(
     refused: RejectedError | None = None
     for chosen in assignments(query, place, dict(lanes or {})):
         here = home.specification
-        said = (query.text, end, chosen, told, here.options, place, moving, collisions)
+        fields = (query.text, end, chosen, parameters, here.options, place, moving, collisions)
         try:
-            return JudgedDrive(DriveFile(scenario, here.set_name, *said), home.library)
+            return JudgedDrive(DriveFile(scenario, here.set_name, *fields), home.library)
         except RejectedError as error:
             refused = refused or error
     assert refused is not None  # every road has a lane

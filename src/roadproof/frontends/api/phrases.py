@@ -196,7 +196,7 @@ def _lift(value: Term) -> Phrase:
             return _number(*_with_unit(value))
         case Real() | Decimal():
             return _number(exact("number", value, "unitless"))
-        case _:
+        case _:  # open: a user's value
             raise UsageError(f"{value!r} {_NO_TERM}")
 
 
@@ -259,10 +259,10 @@ def _quantified(kind: _Quantifier, domain: "Phrase | str", body: Body, name: str
             return _over(kind, domain, body, name)
         case Phrase(), _, str() if callable(body) and not isinstance(body, Phrase):
             words = {*_WORD.findall(str(_lift(body(Phrase(syntax.Name(_HELD))))))}
-            wanted = name or next(iter(inspect.signature(body).parameters), "K")
-            many = (f"{wanted}{k}" for k in range(2, len(words) + 3))
-            return _over(kind, next(x for x in (wanted, *many) if x not in words), domain, body)
-        case _:
+            preferred = name or next(iter(inspect.signature(body).parameters), "K")
+            many = (f"{preferred}{k}" for k in range(2, len(words) + 3))
+            return _over(kind, next(x for x in (preferred, *many) if x not in words), domain, body)
+        case _:  # open: a user's values
             raise UsageError(
                 f"{kind}() needs a domain and a function, as {kind}(lanes, lambda K: ...), "
                 f"or a name, a domain and a formula, as {kind}('K', lanes, formula)"

@@ -1,5 +1,7 @@
 """Claims: proved or refuted."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
@@ -9,54 +11,44 @@ from typing import TYPE_CHECKING, ClassVar, Self, Unpack
 
 from roadproof.engines.prove.properties import OWN, Task, choose, template_properties
 from roadproof.errors import UsageError
-from roadproof.evidence import answer as answers
-from roadproof.evidence.claim import Engine
 from roadproof.evidence.codec import write
-from roadproof.evidence.heading import heading
-from roadproof.evidence.kinds import Evidence
-from roadproof.evidence.strict import JsonObject
-from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
-from roadproof.frontends.api.pictures import drive_pictures
-from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
+from roadproof.frontends.api.question_answers import QuestionAnswers, evidence_of
 from roadproof.frontends.api.settings import models_of, setting, work_of
 from roadproof.frontends.report import claims as claims_text
-from roadproof.frontends.report.cases import Case, Location
 from roadproof.frontends.report.numbers import count, took
-from roadproof.frontends.report.question_cases import claim_cases
-from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run, SearchPlace
-from roadproof.frontends.settings.keywords import ProveKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Prove
+from roadproof.library.assumption import MOTION, assumes_motion, claim_statement
 from roadproof.library.elaborate import read_claim
-from roadproof.library.motion import MOTION, AssumedClaim, at_values, is_moving, limits_of, split, statement
+from roadproof.library.motion import AssumedClaim, at_values, limits_of, split_claim
 from roadproof.library.scenario_references import names_scenarios, read_numbers
-from roadproof.library.specification import Specification
 from roadproof.questions.basis import Basis
-from roadproof.questions.prove import (
-    SCHEMA,
-    ClaimResult,
-    ClaimsData,
-    ClaimsView,
-    ClaimTask,
-    KernelSays,
-    ProveQuestion,
-    claim_data,
-)
-from roadproof.runtime.cost import NO_COST, Cost
-from roadproof.runtime.executors import Jobs, hands_of
-from roadproof.runtime.files import hold_folder
-from roadproof.runtime.pool import Progress
+from roadproof.questions.prove import ClaimResult, ClaimsView, ClaimTask, ProveQuestion
+from roadproof.runtime.budget import NO_COST, Cost
+from roadproof.runtime.executors import Jobs, executor_for
+from roadproof.runtime.files import lock_folder
 from roadproof.runtime.progress import Listener, listening
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, ExitCode, Verdict, claim_verdict, exit_code
-from roadproof.world.road import Road
-from roadproof.world.vehicle import Vehicle
 
 if TYPE_CHECKING:
-    from roadproof.evidence.kernels import KernelAnswer, KernelName, Ruling
+    from roadproof.evidence import answer as answers
+    from roadproof.evidence.claim import Engine
+    from roadproof.evidence.kernels import KernelAnswer, KernelName, KernelRuling
+    from roadproof.evidence.kinds import Evidence
+    from roadproof.evidence.strict import JsonObject
+    from roadproof.frontends.api.pictures import Picture
+    from roadproof.frontends.report.cases import Case, Location
+    from roadproof.frontends.report.sheet import Sheet
+    from roadproof.frontends.settings.keywords import ProveKeywords
+    from roadproof.library.specification import Specification
+    from roadproof.questions.prove_data import KernelSays
+    from roadproof.runtime.pool import Progress
+    from roadproof.world.road import Road
+    from roadproof.world.vehicle import Vehicle
 
 REQUIRES_MOTION = "limits of vehicles require assume=motion, or 'assuming motion:' before the claim"
 _PROPERTY = re.compile(r"[A-Z]\d+")
@@ -70,7 +62,7 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
     """
 
     question: ProveQuestion
-    kernel: "KernelAnswer | None" = None
+    kernel: KernelAnswer | None = None
     places: Mapping[str, Location] = field(default_factory=dict)
     pieces: ClassVar[str] = "claims"
     command: ClassVar[str] = "prove"
@@ -79,18 +71,18 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
     def of(
         cls, question: ProveQuestion, given: Run, each: Callable[[str, ClaimResult], None] | None = None
     ) -> Self:
-        """Settle claims; ``each`` is told of every result. Of several runs one at a time writes a folder."""
+        """Decide claims, calling ``each`` with every result. One run at a time writes a folder."""
 
-        def tell(name: str, answer: answers.Answer, cost: Cost) -> None:
+        def tell(name: str, answer: answers.ClaimAnswer, cost: Cost) -> None:
             if each is not None:
                 each(name, replace(question.result(name, answer), cost=cost))
 
-        with hold_folder(None if given.out is None else Path(given.out)):
-            return cls.settled(question, given, tell)
+        with lock_folder(None if given.out is None else Path(given.out)):
+            return cls.decide(question, given, tell)
 
     @property
     def answers(self) -> tuple[ClaimResult, ...]:
-        """In the order in which they were asked."""
+        """The results in the order of the claims."""
         costs = self.found.costs
         return tuple(replace(x, cost=costs.get(x.name, NO_COST)) for x in self.view.claims)
 
@@ -109,41 +101,45 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
 
     @property
     def exit_code(self) -> ExitCode:
-        found = exit_code((x.verdict, x.expected) for x in self.answers)
-        return found if self.kernel is None else max(found, self.kernel.exit_code)
+        code = exit_code((x.verdict, x.expected) for x in self.answers)
+        return code if self.kernel is None else max(code, self.kernel.exit_code)
 
     def cases(self) -> Iterator[Case]:
+        """Yield a case for each claim."""
         shown = (x for x in self.answers if x.answer is not None and x.answer.is_final)
         files = {} if self.folder is None else {x.name: self.folder / f"{x.name}.json" for x in shown}
+        from roadproof.frontends.report.question_cases import claim_cases  # here: for build servers alone
+
         return claim_cases(self.question, self.answers, files, self.places)
 
-    def put_to_kernel(
-        self, kernel: "KernelName", jobs: Jobs = None, progress: Progress | None = None
-    ) -> Self:
-        """The same, with what a kernel says of each proof. Raises ``MissingSolverError``."""
+    def put_to_kernel(self, kernel: KernelName, jobs: Jobs = None, progress: Progress | None = None) -> Self:
+        """Return the proofs with the rulings of a kernel. Raises ``MissingSolverError``."""
         from roadproof.evidence.kernels import KernelQuestion, kernels
 
-        asked = {x.name: x.certificate for x in self.answers if x.certificate is not None}
-        names = {f"claim_{number}": name for number, name in enumerate(asked, 1)}
-        found = kernels().put(
-            [KernelQuestion(x, asked[y], self.library) for x, y in names.items()],
-            hands_of(jobs).processes,
+        certificates = {x.name: x.certificate for x in self.answers if x.certificate is not None}
+        names = {f"claim_{number}": name for number, name in enumerate(certificates, 1)}
+        answered = kernels().check(
+            [KernelQuestion(x, certificates[y], self.library) for x, y in names.items()],
+            executor_for(jobs).processes,
             progress,
             kernel,
         )
-        rulings = {names[x]: ruling for x, ruling in found.rulings.items()}
-        return replace(self, kernel=replace(found, rulings=rulings))
+        rulings = {names[x]: ruling for x, ruling in answered.rulings.items()}
+        return replace(self, kernel=replace(answered, rulings=rulings))
 
     def kernel_text(self) -> str:
-        """What Coq says of each proof in a line, and what it stands on."""
+        """The ruling of Coq on each proof in a line, with its axioms."""
         if self.kernel is None:
             return ""
         lines: list[str] = []
         for x in self.answers:
             ruling = self.kernel.rulings.get(x.name)
             if ruling is not None:
-                claim = statement(x.task.assuming, " ".join(x.task.claim.split()))
-                lines.append(f"kernel: {ruling.told}  {claim}" + f": {ruling.reason}" * bool(ruling.reason))
+                claim = claim_statement(x.task.assuming, " ".join(x.task.claim.split()))
+                lines.append(
+                    f"kernel: {ruling.text_with_premises}  {claim}"
+                    + f": {ruling.reason}" * bool(ruling.reason)
+                )
         return "\n".join([*lines, str(self.kernel)])
 
     @property
@@ -151,27 +147,36 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
         return claims_text.sheet_of(self.answers)
 
     def as_data(self) -> JsonObject:
+        """Return the plain data of ``--json``."""
+        from roadproof.evidence.heading import heading
+        from roadproof.questions.prove_data import SCHEMA, ClaimsData, claim_data
+
         says = {} if self.kernel is None else self.kernel.rulings
         folder = self.folder
 
-        def place(name: str, answer: answers.Answer) -> object:
+        def place(name: str, answer: answers.ClaimAnswer) -> object:
             return None if folder is None else f"{name}.json"
 
-        claims = (claim_data(x, place, _said(says[x.name]) if x.name in says else None) for x in self.answers)
+        claims = (
+            claim_data(x, place, _kernel_data(says[x.name]) if x.name in says else None) for x in self.answers
+        )
+
         data = ClaimsData(
             **heading(SCHEMA, self.library),
             **ClaimsData.of_road(self.road),
             verdicts=tuple(claims),
-            kernel=None if self.kernel is None else self.kernel.kept,
+            kernel=None if self.kernel is None else self.kernel.data,
         )
         return write(data)
 
     def _write(self, folder: Path, pictures: bool) -> None:
-        with hold_folder(folder):
+        with lock_folder(folder):
             super()._write(folder, pictures)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """The drives that refute a claim."""
+        from roadproof.frontends.api.pictures import drive_pictures  # here: few answers are drawn
+
         return drive_pictures(((x.task.name, x.drive) for x in self.answers), self.library)
 
     def __str__(self) -> str:
@@ -209,44 +214,46 @@ def prove(
     <Verdict.PROVED: 'PROVED'>
     """
     given = Prove.of(options)
-    asked = claims_asked(definitions_of(using), what, using.alone.set_name if using else None, given)
+    question = prove_question(definitions_of(using), what, using.alone.set_name if using else None, given)
     with listening(stage):
-        found = Proofs.of(asked, given)
-    return found if given.kernel is None else found.put_to_kernel(given.kernel, given.jobs, given.progress)
+        proofs = Proofs.of(question, given)
+    return proofs if given.kernel is None else proofs.put_to_kernel(given.kernel, given.jobs, given.progress)
 
 
-def claims_asked(
+def prove_question(
     home: Definitions, what: Sequence[What | AssumedClaim], set_name: str | None, given: Prove
 ) -> ProveQuestion:
-    """What ``prove`` settles: claims in dense time, or within limits; ``set_name``: see ``claims_of``.
+    """Return the question of ``prove``: claims in dense time, or within limits; ``set_name`` as below.
 
     Raises as ``prove``.
     """
     dense = given.engine == "dense"
     values = home.all_values() if given.declared else dict(home.values)
     limits = (models_of(given.vehicles), values) if dense else ()
-    said = Assumptions(given.assume is not None, *limits)
-    asked = claims_of(home, what, set_name, claim_verdict(given.expect), said)
-    basis = replace(asked.basis, effort=work_of(given))
-    asked = replace(asked, basis=basis, seek_drive=given.drive)
+    assumptions = ClaimAssumptions(given.assume is not None, *limits)
+    question = claims_question(home, what, set_name, claim_verdict(given.expect), assumptions)
+    basis = replace(question.basis, effort=work_of(given))
+    question = replace(question, basis=basis, seek_drive=given.drive)
     if given.engine != "dense":
         if given.kernel is not None:
             raise UsageError(f"engine={given.engine!r} makes no certificates for Coq: omit kernel")
-        return _within_limits(asked, home, given.engine, given)
+        return _within_limits(question, home, given.engine, given)
     if given.kernel is not None:
         from roadproof.evidence.kernels import kernels
 
-        kernels().find(given.kernel)
-    return asked
+        kernels().require_installed(given.kernel)
+    return question
 
 
-def _said(ruling: "Ruling") -> KernelSays:
+def _kernel_data(ruling: KernelRuling) -> KernelSays:
+    from roadproof.questions.prove_data import KernelSays
+
     return KernelSays(says=str(ruling), reason=ruling.reason, premises=ruling.limits)
 
 
 @dataclass(frozen=True)
-class Assumptions:
-    """What claims are asked under: whether vehicles move, within the limits of models by name, and values of
+class ClaimAssumptions:
+    """The assumptions of claims: whether vehicles move, within the limits of models by name, and values of
     parameters (SI).
     """
 
@@ -263,34 +270,34 @@ class Assumptions:
                 raise UsageError(f"vehicle {name}: the claim mentions {known}")
         models = {x: self.vehicles.get(x, self.vehicles.get("")) for x in query.vehicles}
         limits = [x for name, y in models.items() if y is not None for x in limits_of(query, name, y)]
-        said = claim.said if is_moving(claim.said) else ((MOTION,) * self.motion + claim.said)
-        if self.vehicles and not is_moving(said):
+        texts = claim.texts if assumes_motion(claim.texts) else ((MOTION,) * self.motion + claim.texts)
+        if self.vehicles and not assumes_motion(texts):
             raise UsageError(REQUIRES_MOTION)
-        return at_values(home.specification, AssumedClaim(query, (*said, *limits)), self.values)
+        return at_values(home.specification, AssumedClaim(query, (*texts, *limits)), self.values)
 
     def of_list(self, specification: Specification, task: Task) -> Task:
         """A claim of the list at these values, too."""
         if not self.values:
             return task
         claim = AssumedClaim(read_claim(specification, task.claim))
-        return replace(task, assuming=at_values(specification, claim, self.values).said)
+        return replace(task, assuming=at_values(specification, claim, self.values).texts)
 
 
-def claims_of(
+def claims_question(
     home: Definitions,
     what: Sequence[What | AssumedClaim],
     set_name: str | None,
     expected: ClaimVerdict = Verdict.PROVED,
-    said: Assumptions | None = None,
+    assumptions: ClaimAssumptions | None = None,
 ) -> ProveQuestion:
-    """What is claimed: the list's claims in a set, in all where None; or one's own in that of ``home``.
+    """Return the question about the list's claims in a set (all sets if None), or about given formulas.
 
     Raises ``TextError``, ``InputError``, ``UsageError``.
     """
     named: list[str] = []
     numbers: set[int] = set()
     own: list[AssumedClaim] = []
-    assumed = said or Assumptions()
+    assumed = assumptions or ClaimAssumptions()
     for x in what:
         if isinstance(x, str) and _PROPERTY.fullmatch(x):
             named.append(x)
@@ -328,31 +335,31 @@ def _read(home: Definitions, what: What | AssumedClaim) -> AssumedClaim:
         return what
     if not isinstance(what, str):
         return AssumedClaim(home.read(what))
-    said, claim = split(what)
-    return AssumedClaim(home.read(claim), said)
+    assumed, claim = split_claim(what)
+    return AssumedClaim(home.read(claim), assumed)
 
 
 def _own(home: Definitions, claims: list[AssumedClaim], expected: ClaimVerdict) -> list[Task]:
     parts = [str(k) if len(claims) > 1 else "" for k in range(1, len(claims) + 1)]
     name = home.specification.set_name
     return [
-        Task(OWN, k, "", None, name, x.query.text, expected, x.said)
+        Task(OWN, k, "", None, name, x.query.text, expected, x.texts)
         for k, x in zip(parts, claims, strict=True)
     ]
 
 
-def _within_limits(asked: ProveQuestion, home: Definitions, engine: Engine, given: Prove) -> ProveQuestion:
-    """The same claims, about drives on one road up to a horizon, within models of vehicles.
+def _within_limits(question: ProveQuestion, home: Definitions, engine: Engine, given: Prove) -> ProveQuestion:
+    """Return the claims about drives on one road up to a horizon, within models of vehicles.
 
     Raises ``InputError``, ``UsageError``.
     """
-    from roadproof.engines.search.question import SearchOptions, exists
+    from roadproof.engines.setting import SearchOptions, exists_mode
 
-    if not asked.are_own:
+    if not question.are_own:
         raise UsageError(
             f"engine={engine!r} requires claims of your own: template properties are about all time"
         )
-    if any(x.task.assuming for x in asked.tasks):
+    if any(x.task.assuming for x in question.tasks):
         raise UsageError(
             f"engine={engine!r} is about drives anyway, at the values of params: assume nothing, or ask "
             "engine='dense'"
@@ -360,6 +367,6 @@ def _within_limits(asked: ProveQuestion, home: Definitions, engine: Engine, give
     where = SearchPlace(road=given.road, vehicles=given.vehicles, horizon=given.horizon, dt=given.dt)
     where = replace(where, strict=given.strict)
     place = replace(setting(home, where), values=dict(home.values))
-    within = exists(place, SearchOptions("any", engine))
-    basis = replace(asked.basis, values=dict(home.values))
-    return replace(asked, basis=basis, tasks=tuple(replace(x, within=within) for x in asked.tasks))
+    within = exists_mode(place, SearchOptions("any", engine))
+    basis = replace(question.basis, values=dict(home.values))
+    return replace(question, basis=basis, tasks=tuple(replace(x, within=within) for x in question.tasks))

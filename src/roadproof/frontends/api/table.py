@@ -1,13 +1,17 @@
 """Answers as tables: rows, frames, and what a notebook shows."""
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from roadproof.errors import MissingSolverError
-from roadproof.extension import imported, listed
-from roadproof.frontends.report.sheet import Value
+from roadproof.extension import import_entry, list_entries
 
-Row: TypeAlias = dict[str, Value]
+if TYPE_CHECKING:
+    from roadproof.frontends.report.sheet import Value
+
+Row: TypeAlias = "dict[str, Value]"
 """Values by the name of their column."""
 
 
@@ -20,10 +24,10 @@ class Table(ABC):
 
     def to_frame(self) -> Any:
         """The rows as a frame of polars. Raises ``MissingSolverError`` where polars is not installed."""
-        makers = listed("frames")
+        makers = list_entries("frames")
         if not makers:
             raise MissingSolverError("to_frame needs an extension with data frames; rows() has the rows")
-        return imported(makers[0])(self.rows())
+        return import_entry(makers[0])(self.rows())
 
     def _repr_html_(self) -> str:
         import html

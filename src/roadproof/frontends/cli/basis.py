@@ -1,4 +1,4 @@
-"""What questions are asked of, from the options that commands share."""
+"""The definitions of a question, from the options that commands share."""
 
 import argparse
 from collections import deque
@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.options import read_hands, write_build_results, write_json
+from roadproof.frontends.cli.options import read_executor, write_build_results, write_json
 from roadproof.frontends.cli.progress import Counter, tell_road, warn
 from roadproof.frontends.settings.flags import read_flag, read_keywords
 from roadproof.frontends.settings.groups import Readings
@@ -15,19 +15,18 @@ from roadproof.frontends.settings.option import Settings
 
 if TYPE_CHECKING:
     from roadproof.frontends.api.definitions import Definitions
-    from roadproof.frontends.api.questioned import QuestionAnswers
+    from roadproof.frontends.api.question_answers import QuestionAnswers
 
 A = TypeVar("A")
 
 
 def read_definitions(args: argparse.Namespace, settings: type[Readings]) -> "Definitions":
     """The definitions that the flags of a question choose. Raises ``InputError``, ``UsageError``."""
-    from roadproof.frontends.api.definitions import chosen_in
-    from roadproof.library.diagnose import checked_library
+    from roadproof.frontends.api.definitions import chosen_in, library_with
 
     args.specs = settings.with_files(args, args.specs or [])
     sets = read_flag(args, settings, "sets") or ("base",)
-    library, readings = checked_library(args.specs or ()), read_flag(args, settings, "readings")
+    library, readings = library_with(args.specs or ()), read_flag(args, settings, "readings")
     if len({*sets}) < len(sets):
         raise UsageError(f"--set {','.join(sets)}: a spec set is repeated; name each once")
     params = read_flag(args, settings, "params") if "params" in args else None
@@ -43,8 +42,8 @@ def study_keywords(args: argparse.Namespace, settings: type[Settings], beside_js
     if beside_json and folder is None and args.json not in (None, "-"):
         file = Path(args.json)
         folder = file.with_name(f"{file.stem}-evidence")
-    told = {"out": folder, "jobs": read_hands(args), "progress": Counter(), "say": warn}
-    return read_keywords(args, settings) | told
+    shared = {"out": folder, "jobs": read_executor(args), "progress": Counter(), "say": warn}
+    return read_keywords(args, settings) | shared
 
 
 def in_order(names: Iterable[str], show: Callable[[str, A], None]) -> Callable[[str, A], None]:
@@ -52,6 +51,7 @@ def in_order(names: Iterable[str], show: Callable[[str, A], None]) -> Callable[[
     left, early = deque(names), dict[str, A]()
 
     def hear(name: str, answer: A) -> None:
+        """Show an answer as soon as all that come before it are shown."""
         early[name] = answer
         while left and left[0] in early:
             first = left.popleft()
@@ -60,23 +60,23 @@ def in_order(names: Iterable[str], show: Callable[[str, A], None]) -> Callable[[
     return hear
 
 
-def hand_over(
+def deliver(
     args: argparse.Namespace,
-    found: "QuestionAnswers[Any]",
+    answers: "QuestionAnswers[Any]",
     pictures: bool = False,
 ) -> int:
     """JSON, what is written to be looked at, and the text of an answer; its exit code."""
     if args.json:
-        write_json(found.as_data(), args.json)
-    write_build_results(args, found)
+        write_json(answers.as_data(), args.json)
+    write_build_results(args, answers)
     if args.out is not None:
-        found.add_files(pictures)
+        answers.add_files(pictures)
     if args.json != "-":
-        print(found)
-        for line in found.supposed:
+        print(answers)
+        for line in answers.supposed:
             print(line)
-        for name, said in found.library.freedom.items():
-            print(f"{name} is {said}")
-    for road in found.roads:
+        for name, freedom in answers.library.freedom.items():
+            print(f"{name} is {freedom}")
+    for road in answers.roads:
         tell_road(road)
-    return found.exit_code
+    return answers.exit_code

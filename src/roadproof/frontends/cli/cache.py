@@ -31,6 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
     from roadproof.runtime.cache import files, private_folder
 
     home = private_folder("answers")
@@ -39,12 +40,12 @@ def run(args: argparse.Namespace) -> int:
         return ExitCode.AS_EXPECTED
     print(home.parent)
     for name, what in _FOLDERS.items():
-        found = files(name)
-        size = sum(said.st_size for said in found.values())
-        for path in found if args.clear else ():
+        stored = files(name)
+        size = sum(status.st_size for status in stored.values())
+        for path in stored if args.clear else ():
             try:
                 path.unlink(missing_ok=True)
             except OSError as error:
                 raise InputError(f"cannot remove {path}: {error.strerror}") from None
-        print(f"{len(found):>6} {what}, {size / 1e6:.1f} MB" + (", removed" if args.clear else ""))
+        print(f"{len(stored):>6} {what}, {size / 1e6:.1f} MB" + (", removed" if args.clear else ""))
     return ExitCode.AS_EXPECTED

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.errors import UsageError
-from roadproof.extension import entries, imported
+from roadproof.extension import entries, import_entry
 from roadproof.frontends.cli.options import print_answer, write_build_results
 from roadproof.frontends.cli.progress import Counter
 from roadproof.frontends.settings.flags import read_keywords
@@ -51,6 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
     from roadproof.frontends.api.checking import check
 
     if args.kernel is not None and args.solver != "z3":
@@ -58,7 +59,7 @@ def run(args: argparse.Namespace) -> int:
     others = entries("checked_files")
     for path in args.paths:
         if path.suffix in others:
-            code: int = imported(others[path.suffix])(args)
+            code: int = import_entry(others[path.suffix])(args)
             return code
     if args.write is not None:
         return _write(args)
@@ -72,8 +73,8 @@ def _write(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.checking import write_sources
 
     if args.kernel is None or args.json or args.junit or args.sarif:
-        told = "add --kernel, and omit --json, --junit and --sarif"
-        raise UsageError(f"--write DIR only writes files for a kernel: {told}")
+        remedy = "add --kernel, and omit --json, --junit and --sarif"
+        raise UsageError(f"--write DIR only writes files for a kernel: {remedy}")
     written = write_sources(
         *args.paths, folder=args.write, specs=args.specs or (), jobs=args.jobs, kernel=args.kernel
     )

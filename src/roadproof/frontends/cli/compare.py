@@ -9,7 +9,7 @@ from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import print_answer
 from roadproof.frontends.cli.progress import clear, note, tell_road, tell_stage
 from roadproof.frontends.settings.flags import read_flag, read_keywords
-from roadproof.frontends.settings.questions import Compare
+from roadproof.frontends.settings.questions import CompareSettings
 from roadproof.runtime.progress import listening
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ examples:
   roadproof compare 4 4 --set base --set ext          the same scenario in two spec sets
   roadproof compare 1 4 --out differences             drives that tell the two apart
 """
-OPTIONS = Compare
+OPTIONS = CompareSettings
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -32,20 +32,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
     from roadproof.frontends.api.comparing import compare
 
-    sets = read_flag(args, Compare, "sets")
+    sets = read_flag(args, CompareSettings, "sets")
     if len(sets) > 2:
         raise UsageError(f"--set is given {len(sets)} times: two formulas have at most two spec sets")
-    home = read_definitions(args, Compare)
-    begun = time.monotonic()
+    home = read_definitions(args, CompareSettings)
+    start = time.monotonic()
 
     def show(name: str, direction: "Direction") -> None:
-        note(f"{name}: {direction.verdict} (after {time.monotonic() - begun:.1f} s)")
+        note(f"{name}: {direction.verdict} (after {time.monotonic() - start:.1f} s)")
 
     with listening(tell_stage):
-        found = compare(args.first, args.second, home, each=show, **read_keywords(args, Compare))
+        comparison = compare(args.first, args.second, home, each=show, **read_keywords(args, CompareSettings))
     clear()
-    print_answer(found, args.json)
-    tell_road(found.road)
-    return found.exit_code
+    print_answer(comparison, args.json)
+    tell_road(comparison.road)
+    return comparison.exit_code

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TypeAlias
 
-from roadproof.extension import entries, imported
+from roadproof.extension import entries, import_entry
 from roadproof.frontends.cli.help import CommandParser, fill
 from roadproof.frontends.cli.overview import COMMANDS
 from roadproof.verdict import ExitCode
@@ -30,6 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
     from argcomplete.shell_integration import shellcode
 
     print(shellcode(["roadproof"], shell=args.shell), end="")
@@ -41,12 +42,12 @@ def complete() -> None:
     import argcomplete
 
     words = os.environ["COMP_LINE"].split()[1:]
-    asked = next((word for word in words if not word.startswith("-")), "")
+    chosen = next((word for word in words if not word.startswith("-")), "")
     parser = CommandParser(prog="roadproof")
     commands = parser.add_subparsers()
-    for name, told in COMMANDS.items():
-        command = commands.add_parser(name, help=told.summary, add_help=False)
-        if name == asked:
+    for name, entry in COMMANDS.items():
+        command = commands.add_parser(name, help=entry.summary, add_help=False)
+        if name == chosen:
             fill(command, name)
             for action in command._actions:
                 _attach(action)
@@ -54,7 +55,7 @@ def complete() -> None:
 
 
 def _attach(action: argparse.Action) -> None:
-    """Say how the value of an option or argument is completed: by a list, by file names, or not at all."""
+    """Attach to an option or argument how a shell completes its value: by a list, by files, or not at all."""
     from argcomplete.completers import FilesCompleter, SuppressCompleter
 
     metavar = action.metavar if isinstance(action.metavar, str) else ""
@@ -69,10 +70,11 @@ def _attach(action: argparse.Action) -> None:
 
 def _completer(values: Callable[[str], Values], files: bool) -> Callable[..., Values]:
     def complete_value(prefix: str, **_: object) -> Values:
+        """Return the completions of a value, with descriptions."""
         from argcomplete.completers import FilesCompleter
 
-        found = {word: about for word, about in values(prefix).items() if word.startswith(prefix)}
-        return found | dict.fromkeys(FilesCompleter()(prefix), "") if files else found
+        matches = {word: about for word, about in values(prefix).items() if word.startswith(prefix)}
+        return matches | dict.fromkeys(FilesCompleter()(prefix), "") if files else matches
 
     return complete_value
 
@@ -80,9 +82,9 @@ def _completer(values: Callable[[str], Values], files: bool) -> Callable[..., Va
 def _scenarios(prefix: str) -> Values:
     """Numbers, also behind a comma; names of ISO 34502 where a letter was typed."""
     from roadproof.library.loading import bundled_library
-    from roadproof.library.words import called
+    from roadproof.library.words import words_by_number
 
-    known = called(bundled_library().select())
+    known = words_by_number(bundled_library().select())
     head = prefix[: prefix.rfind(",") + 1] if re.match(r"[\d,-]", prefix) else ""
     if head or not prefix or prefix[0].isdigit():
         return {f"{head}{number}": words.name for number, words in known.items()}
@@ -117,10 +119,10 @@ def _parameters(prefix: str) -> Values:
 
 
 def _of_extensions() -> Mapping[str, Callable[[str], Values]]:
-    """How extensions complete values, by flag."""
+    """Return the completions of extensions by flag."""
 
     def completed(entry: str, prefix: str) -> Values:
-        return _listed(prefix, imported(entry)())
+        return _listed(prefix, import_entry(entry)())
 
     return {flag: partial(completed, entry) for flag, entry in entries("completions").items()}
 

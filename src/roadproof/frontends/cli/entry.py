@@ -1,4 +1,4 @@
-"""Where the program starts: prints its help at once, and leaves all else to ``cli.main``."""
+"""The entry point of the program: prints its help at once, and leaves all else to ``cli.main``."""
 
 import sys
 
@@ -24,7 +24,7 @@ def main() -> int:
 
 
 def _refuse(error: Exception) -> int:
-    """Say which extension cannot be used; there are no commands without it."""
+    """Print which extension cannot be used; return the exit code."""
     from roadproof.errors import RoadproofError
 
     if not isinstance(error, RoadproofError):

@@ -47,6 +47,7 @@ class CommandParser(argparse.ArgumentParser):
         raise UsageError(f"{message}; see {self.prog} --help")
 
     def format_help(self) -> str:
+        """Return the help text, with a note on options that it leaves out."""
         text, rare = super().format_help(), sum(map(is_rare, self._actions))
         if rare and self.formatter_class is _UsualHelp:
             return f"{text}\n{rare} more option{'s' * (rare > 1)}: {self.prog} --help-all\n"
@@ -60,6 +61,7 @@ class _AllHelp(argparse.RawDescriptionHelpFormatter):
     def add_usage(
         self, usage: str | None, actions: Iterable[argparse.Action], groups: Any, prefix: str | None = None
     ) -> None:
+        """Add a usage line with required arguments alone."""
         needed = [x for x in actions if x.required or not x.option_strings]
         self._prog = f"{self._prog} [OPTION ...]"
         super().add_usage(usage, needed, (), prefix)

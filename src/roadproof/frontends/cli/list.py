@@ -31,6 +31,7 @@ OPTIONS = List
 
 
 def run(args: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
     specification = read_definitions(args, List).specification
     if args.json:
         write_json(take_inventory(specification), args.json)
@@ -40,20 +41,20 @@ def run(args: argparse.Namespace) -> int:
 
 
 def take_inventory(specification: Specification) -> "JsonObject":
-    """What there is to talk about under one spec set and choice of options, as plain data."""
-    from roadproof.evidence.answers import library as kept
-    from roadproof.evidence.answers.shared import Binding
+    """Return the names of one spec set and choice of options, as plain data."""
+    from roadproof.evidence.answers import library as library_data
+    from roadproof.evidence.answers.shared import BindingData
     from roadproof.evidence.codec import write
     from roadproof.evidence.heading import heading
 
     library = specification.library
     scenarios = [name for name in specification.definitions if number_in(name) is not None]
     others = [d for name, d in specification.definitions.items() if name not in scenarios]
-    answer = kept.Answer(
-        **heading(kept.SCHEMA, library),
+    answer = library_data.LibraryData(
+        **heading(library_data.SCHEMA, library),
         set=specification.set_name,
         scenarios=tuple(
-            kept.Scenario(
+            library_data.ScenarioData(
                 name=name,
                 arguments=tuple(roles),
                 doc=specification.describe(specification.definitions[name]),
@@ -62,22 +63,25 @@ def take_inventory(specification: Specification) -> "JsonObject":
             for name, roles in signatures(specification, scenarios).items()
         ),
         definitions=tuple(
-            kept.Definition(
+            library_data.DefinitionData(
                 name=definition.name,
-                parameters=tuple(Binding(name=b.name, sort=b.sort) for b in definition.parameters),
+                parameters=tuple(BindingData(name=b.name, sort=b.sort) for b in definition.parameters),
                 doc=specification.describe(definition),
             )
             for definition in others
         ),
         sets=tuple(
-            kept.SpecificationSet(name=s.name, extends=s.parent, doc=s.doc) for s in library.sets.values()
+            library_data.SpecificationSetData(name=s.name, extends=s.parent, doc=s.doc)
+            for s in library.sets.values()
         ),
         options=tuple(
-            kept.Option(name=o.name, values=o.values, chosen=specification.options[o.name], doc=o.doc)
+            library_data.OptionData(
+                name=o.name, values=o.values, chosen=specification.options[o.name], doc=o.doc
+            )
             for o in library.options.values()
         ),
         parameters=tuple(
-            kept.Parameter(name=p.name, value=str(p.value), unit=p.unit, bound=p.bound, doc=p.doc)
+            library_data.ParameterData(name=p.name, value=str(p.value), unit=p.unit, bound=p.bound, doc=p.doc)
             for p in library.parameters.values()
         ),
     )
@@ -108,8 +112,8 @@ def _scenarios(specification: Specification) -> Iterator[tuple[str, str]]:
         yield from [(where, "")] if where else []
         for name, one in group:
             does = ", ".join(filter(None, (one.sv, one.pov)))
-            told = dict.fromkeys(filter(None, (one.title, does)))
-            yield f"{'  ' if where else ''}{name}({', '.join(roles[name])})", ": ".join(told)
+            texts = dict.fromkeys(filter(None, (one.title, does)))
+            yield f"{'  ' if where else ''}{name}({', '.join(roles[name])})", ": ".join(texts)
 
 
 def _definitions(definitions: Iterable[Definition], specification: Specification) -> list[tuple[str, str]]:

@@ -45,7 +45,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _answer_last(arguments: list[str]) -> int:
-    """As ``answer``, where this process then ends, at once: Python need not take apart all objects."""
+    """Run a command and end the process at once, without the time that Python takes to free all objects."""
     try:
         code = answer(arguments)
     finally:
@@ -61,7 +61,7 @@ def _answer_last(arguments: list[str]) -> int:
 
 
 def answer(arguments: list[str]) -> int:
-    """As ``main``, in this process."""
+    """Run a command in this process; return its exit code."""
     make_streams_lenient()
     try:
         code = _run(arguments)
@@ -79,7 +79,7 @@ def answer(arguments: list[str]) -> int:
 
 
 def _ending(error: BaseException) -> tuple[str, ExitCode]:
-    """What ended a command, in words, and its exit code."""
+    """Return the message and the exit code for an error that ended a command."""
     if isinstance(error, RoadproofError):
         return str(error), ExitCode(error.exit_code)
     if isinstance(error, KeyboardInterrupt):
@@ -87,8 +87,8 @@ def _ending(error: BaseException) -> tuple[str, ExitCode]:
     if isinstance(error, OSError) and error.errno is not None:
         return _of_system(error), ExitCode.BAD_INPUT
     reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-    told = f"Set {TRACEBACK}=1 to see where it happened, and report it with the command line."
-    return f"this is our fault: {reason}\n{told}", ExitCode.OUR_FAULT
+    remedy = f"Set {TRACEBACK}=1 to see where it happened, and report it with the command line."
+    return f"this is our fault: {reason}\n{remedy}", ExitCode.OUR_FAULT
 
 
 def _run(arguments: list[str]) -> int:
@@ -107,9 +107,9 @@ def _run(arguments: list[str]) -> int:
         raise UsageError("name a sub-command; see roadproof --help")
     name = arguments[at]
     if name not in COMMANDS:
-        from roadproof.library.specification import unknown
+        from roadproof.library.specification import unknown_name
 
-        raise UsageError(f"{unknown('sub-command', name, COMMANDS)}\nSee roadproof --help.")
+        raise UsageError(f"{unknown_name('sub-command', name, COMMANDS)}\nSee roadproof --help.")
     command = command_parser(name)
     parsed = command.parse_args(arguments[at + 1 :])
     be_quiet(getattr(parsed, "quiet", False))
@@ -128,7 +128,7 @@ def _run(arguments: list[str]) -> int:
 
 
 def _write_ended(parsed: argparse.Namespace, name: str, error: BaseException) -> None:
-    """Say in the files of ``--junit`` and ``--sarif`` that the command ended, where they can be written."""
+    """Write into the files of ``--junit`` and ``--sarif`` that the command ended, where possible."""
     if isinstance(error, BrokenPipeError):
         return
     from roadproof.frontends.cli.options import write_ended
@@ -159,7 +159,7 @@ def _try_path(target: str | Path | None, out: Path | None) -> None:
 
 
 def _of_system(error: OSError) -> str:
-    """What a failing file or disk is told as; what stdout still holds is lost where the disk is full."""
+    """Return the message for a failing file or disk; a full disk loses what stdout still holds."""
     reason = os.strerror(error.errno or 0)
     if error.filename is not None:
         return f"cannot use {error.filename}: {reason}"

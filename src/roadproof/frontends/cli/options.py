@@ -11,7 +11,7 @@ from roadproof.errors import UsageError
 from roadproof.extension import entries
 from roadproof.frontends.cli.streams import takes_everything
 from roadproof.frontends.settings.flags import section
-from roadproof.runtime.files import utf8, whole_file, write_whole
+from roadproof.runtime.files import atomic_file, utf8, write_atomic
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
@@ -23,29 +23,29 @@ class _Answer(Protocol):
     def as_data(self) -> "JsonObject": ...
 
 
-def write_build_results(args: argparse.Namespace, found: object) -> None:
+def write_build_results(args: argparse.Namespace, answer: object) -> None:
     """Write files for build servers, such as that of ``--junit``, where a command has them.
 
     Raises ``InputError``.
     """
-    wanted = _build_results(args)
-    if wanted:
+    files = _build_results(args)
+    if files:
         from roadproof.frontends.api.build_result import BuildResult
 
-        assert isinstance(found, BuildResult)
-        for format, file in wanted.items():
-            write_whole(file, utf8(found.to(format)))
+        assert isinstance(answer, BuildResult)
+        for format, file in files.items():
+            write_atomic(file, utf8(answer.to(format)))
 
 
 def write_ended(args: argparse.Namespace, command: str, code: ExitCode, message: str) -> None:
     """Write the same of a command that ends without an answer, so that no earlier file stands for it."""
-    wanted = _build_results(args)
-    if wanted:
+    files = _build_results(args)
+    if files:
         from roadproof.frontends.api.build_result import written
         from roadproof.frontends.report.cases import ended_case
 
-        for format, file in wanted.items():
-            write_whole(file, utf8(written(format, command, (ended_case(command, code, message),), code)))
+        for format, file in files.items():
+            write_atomic(file, utf8(written(format, command, (ended_case(command, code, message),), code)))
 
 
 def _build_results(args: argparse.Namespace) -> dict[str, Path]:
@@ -53,15 +53,15 @@ def _build_results(args: argparse.Namespace) -> dict[str, Path]:
     return {x: file for x in entries("build_results") if (file := vars(args).get(x)) is not None}
 
 
-def print_answer(found: _Answer, target: str | None) -> None:
+def print_answer(answer: _Answer, target: str | None) -> None:
     """An answer as text, or as JSON where ``--json`` names stdout; also as JSON to the file that it names.
 
     Raises ``InputError``.
     """
     if target:
-        write_json(found.as_data(), target)
+        write_json(answer.as_data(), target)
     if target != "-":
-        print(found)
+        print(answer)
 
 
 def write_json(data: Mapping[str, object], target: str) -> None:
@@ -71,37 +71,37 @@ def write_json(data: Mapping[str, object], target: str) -> None:
     if target == "-":
         print(text, end="")
         return
-    with whole_file(Path(target)) as file:
+    with atomic_file(Path(target)) as file:
         file.write(utf8(text))
 
 
 def add_what_arguments(parser: argparse.ArgumentParser, every: str) -> None:
     """Scenarios and formulas by position, and ``--all``, of which ``every`` is the help."""
     question = section(parser, "question")
-    told = "scenarios (4, 1,3-8 or a name) or formulas"
-    question.add_argument("what", metavar="N|FORMULA", nargs="*", help=told)
+    help_text = "scenarios (4, 1,3-8 or a name) or formulas"
+    question.add_argument("what", metavar="N|FORMULA", nargs="*", help=help_text)
     question.add_argument("--all", action="store_true", help=every)
 
 
 def some_or_all(args: argparse.Namespace) -> list[str]:
-    """What is named; nothing with --all. Raises ``UsageError``."""
+    """Return the named scenarios and formulas, none with --all. Raises ``UsageError``."""
     if args.all == bool(args.what):
         raise UsageError("name scenarios or formulas, or use --all, but not both")
     return list(args.what)
 
 
-def read_hands(args: argparse.Namespace) -> "Executor":
-    """Who does the work, by ``--jobs``, and where a command has them ``--shard`` and ``--cluster``.
+def read_executor(args: argparse.Namespace) -> "Executor":
+    """Return the executor of ``--jobs``, ``--shard`` and ``--cluster``.
 
     Raises ``UsageError``.
     """
     from roadproof.frontends.cli.progress import note
     from roadproof.runtime.executors import Cluster, Executor, Shard
 
-    said = vars(args)
+    options = vars(args)
     names = ("ca", "cert", "key")
-    ca, cert, key = files = [said.get(f"tls_{name}") for name in names]
-    address, share = said.get("cluster"), said.get("shard")
+    ca, cert, key = files = [options.get(f"tls_{name}") for name in names]
+    address, share = options.get("cluster"), options.get("shard")
     named = [f"--tls-{name}" for name, file in zip(names, files, strict=True) if file is not None]
     if named and address is None:
         raise UsageError(f"{named[0]} requires --cluster SCHEDULER")

@@ -2,8 +2,9 @@
 
 import argparse
 
-from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.settings.studies import Order
+from roadproof.frontends.cli.basis import deliver, read_definitions, study_keywords
+from roadproof.frontends.cli.progress import note
+from roadproof.frontends.settings.relations import Order
 
 SUMMARY = "decide which scenarios imply which"
 
@@ -20,7 +21,10 @@ OPTIONS = Order
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.frontends.api.studies import order
+    """Run the command; return its exit code."""
+    from roadproof.frontends.api.ordering import order
 
-    found = order(args.among, read_definitions(args, OPTIONS), **study_keywords(args, OPTIONS))
-    return hand_over(args, found, args.pictures)
+    if args.among is None:  # it takes minutes, known answers too, whose drives are judged again
+        note("expanding all scenarios into families, then looking up known answers of each family")
+    orders = order(args.among, read_definitions(args, OPTIONS), **study_keywords(args, OPTIONS))
+    return deliver(args, orders, args.pictures)

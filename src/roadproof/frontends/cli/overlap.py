@@ -2,8 +2,8 @@
 
 import argparse
 
-from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.settings.studies import Overlap
+from roadproof.frontends.cli.basis import deliver, read_definitions, study_keywords
+from roadproof.frontends.settings.relations import Overlap
 
 SUMMARY = "decide for each pair of scenarios whether both can hold at once"
 
@@ -24,8 +24,9 @@ OPTIONS = Overlap
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.frontends.api.studies import overlap
+    """Run the command; return its exit code."""
+    from roadproof.frontends.api.relations import overlap
 
     home = read_definitions(args, OPTIONS)
-    found = overlap(args.among, home, **study_keywords(args, OPTIONS, beside_json=True))
-    return hand_over(args, found, args.pictures)
+    overlaps = overlap(args.among, home, **study_keywords(args, OPTIONS, beside_json=True))
+    return deliver(args, overlaps, args.pictures)

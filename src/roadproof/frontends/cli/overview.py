@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
-from roadproof.extension import AUDIENCES, Installed, installed, refused
+from roadproof.extension import AUDIENCES, InstalledExtension, extension_error, installed_extensions
 
 _ORDER = ("list", "show", "prove", "witness", "compare", "overlap", "order", "check")
 _HEAD = "Compiles driving scenarios to proofs, witnesses and monitors."
@@ -27,24 +27,24 @@ exit codes: 0 as expected, 10 refuted or unexpected, 20 unknown, 30 cross-check 
 class Command:
     """A sub-command: the module that answers it, what it does, and the extension that adds it, if one."""
 
-    def __init__(self, module: str, summary: str, extension: Installed | None = None) -> None:
+    def __init__(self, module: str, summary: str, extension: InstalledExtension | None = None) -> None:
         self.module, self.summary, self.extension = module, summary, extension
 
 
 def _find_commands() -> Mapping[str, Command]:
     """The sub-commands by name: the modules with a summary, first those of the core."""
     core = _commands_in(os.path.dirname(__file__), __name__.rpartition(".")[0], None)
-    found = {name: core[name] for name in (*_ORDER, *sorted({*core} - {*_ORDER})) if name in core}
-    for x in installed().values():
+    commands = {name: core[name] for name in (*_ORDER, *sorted({*core} - {*_ORDER})) if name in core}
+    for x in installed_extensions().values():
         mine = _commands_in(os.path.join(x.folder, "commands"), f"{x.package}.commands", x)
         for name in mine:
-            if name in found:
-                raise refused(x.name, f"the command {name} is there already; uninstall {x.package}")
-        found |= mine
-    return found
+            if name in commands:
+                raise extension_error(x.name, f"the command {name} is there already; uninstall {x.package}")
+        commands |= mine
+    return commands
 
 
-def _commands_in(folder: str, package: str, extension: Installed | None) -> dict[str, Command]:
+def _commands_in(folder: str, package: str, extension: InstalledExtension | None) -> dict[str, Command]:
     files = sorted(os.listdir(folder)) if os.path.isdir(folder) else []
     summaries = {x[:-3]: _summary(os.path.join(folder, x)) for x in files if x.endswith(".py")}
     return {name: Command(f"{package}.{name}", text, extension) for name, text in summaries.items() if text}
@@ -64,11 +64,11 @@ COMMANDS = _find_commands()
 
 def groups() -> Mapping[str, list[str]]:
     """The names of commands: of the core, then by those whom they are for."""
-    found: dict[str, list[str]] = {"core": [name for name, x in COMMANDS.items() if x.extension is None]}
+    by_title: dict[str, list[str]] = {"core": [name for name, x in COMMANDS.items() if x.extension is None]}
     for audience in AUDIENCES:
         mine = {name: x.extension for name, x in COMMANDS.items() if x.extension is not None}
-        found[f"for {audience}"] = [name for name, x in mine.items() if x.record.audience == audience]
-    return {title: names for title, names in found.items() if names}
+        by_title[f"for {audience}"] = [name for name, x in mine.items() if x.record.audience == audience]
+    return {title: names for title, names in by_title.items() if names}
 
 
 def overview() -> str:
@@ -81,18 +81,21 @@ def overview() -> str:
         "\n".join([f"{core[0]}:", *lines]),
     ]
     added = {title: _by_extension(names) for title, names in others}
-    width = max((len(names) for told in added.values() for names in told.values()), default=0)
-    for title, told in added.items():
-        lines = [f"  {names:<{width}}  {installed()[name].record.title}" for name, names in told.items()]
+    width = max((len(names) for by_extension in added.values() for names in by_extension.values()), default=0)
+    for title, by_extension in added.items():
+        lines = [
+            f"  {names:<{width}}  {installed_extensions()[name].record.title}"
+            for name, names in by_extension.items()
+        ]
         blocks.append("\n".join([f"{title}:", *lines]))
     return "\n\n".join([*blocks, _FOOT])
 
 
 def _by_extension(names: list[str]) -> Mapping[str, str]:
     """Commands by the extension that adds them, in one text."""
-    found: dict[str, str] = {}
+    names_of: dict[str, str] = {}
     for name in names:
         x = COMMANDS[name].extension
         assert x is not None
-        found[x.name] = f"{found[x.name]}, {name}" if x.name in found else name
-    return found
+        names_of[x.name] = f"{names_of[x.name]}, {name}" if x.name in names_of else name
+    return names_of

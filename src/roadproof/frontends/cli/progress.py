@@ -1,4 +1,4 @@
-"""How far a run is, on stderr: on a terminal one line that changes, else one every half minute.
+"""Progress messages on stderr: on a terminal one line that changes, else one every half minute.
 
 The lines of every half minute are printed by the process that watches this one (``cli.supervising``), so
 they come also while a solver keeps this one busy.
@@ -19,7 +19,7 @@ _BE_QUIET = "quiet"
 
 
 class _Listeners:
-    """Where word of the progress goes: ``pipe`` leads to the process that watches."""
+    """The receivers of progress messages; ``pipe`` leads to the supervising process."""
 
     pipe: int | None = None
     quiet: bool = False
@@ -34,14 +34,14 @@ def report_to(pipe: int) -> None:
 
 
 def be_quiet(quiet: bool = True) -> None:
-    """Say nothing from now on."""
+    """Suppress progress messages from now on."""
     _listeners.quiet = quiet or bool(os.environ.get(QUIET))
     if _listeners.quiet:
         _report(_BE_QUIET)
 
 
 def tell(text: str, last: bool = False) -> None:
-    """How far it is now, in one line; with ``last`` the line is left standing on a terminal."""
+    """Return how far it is now, in one line; with ``last`` the line is left standing on a terminal."""
     if _listeners.quiet:
         return
     _report(text)
@@ -68,21 +68,23 @@ def warn(line: str) -> None:
 
 
 def tell_road(road: "Road | None") -> None:
-    """Say what was left out of the map of a road on which a question was asked, and how far it bends."""
-    from roadproof.world.unread import unread_of_road
+    """Print what was left out of a road's map, and how far the road bends."""
+    if road is None:
+        return
+    from roadproof.world.not_read import road_not_read_note
 
-    for told in unread_of_road(road):
-        warn(f"note: {told}")
+    for text in road_not_read_note(road):
+        warn(f"note: {text}")
     tell_bends(road)
 
 
 def tell_bends(road: "Road | None") -> None:
-    """Say how far lengths in lanes are from those in s, where a question was asked on a road with bends."""
-    from roadproof.world.length_error import told_bends
+    """Print how far lengths in lanes are from those in s, on a road with bends."""
+    from roadproof.world.length_error import bend_note
 
-    told = told_bends(road)
-    if told:
-        warn(told)
+    text = bend_note(road)
+    if text:
+        warn(text)
 
 
 ALIKE = ("recordings",)
@@ -92,14 +94,14 @@ LEAST_DONE = 2
 
 
 class Counter:
-    """Tells how many of many are done; where pieces are alike, also how long the rest will take about."""
+    """A counter that prints how many parts are done; for equal parts also the remaining time."""
 
     def __init__(self) -> None:
         self.begun = time.monotonic()
         self.known: int | None = None
 
     def __call__(self, done: int, total: int, what: str) -> None:
-        """So many are done of so many; ``what`` is the word for many of them."""
+        """Print how many are done of all; ``what`` is the plural of the things counted."""
         if self.known is None or done < self.known:
             self.begun, self.known = time.monotonic(), done
         known = what in ALIKE and done - self.known >= LEAST_DONE
@@ -109,7 +111,7 @@ class Counter:
 
 
 def tell_stage(stage: "Stage") -> None:
-    """What the run is at."""
+    """Print the stage of the run."""
     tell(str(stage))
 
 
@@ -130,7 +132,7 @@ def _report(text: str) -> None:
 
 
 def wants_quiet(text: str) -> bool:
-    """Whether a line that came through the pipe asks for silence."""
+    """Return whether a line that came through the pipe asks for silence."""
     return text == _BE_QUIET
 
 

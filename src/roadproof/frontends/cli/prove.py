@@ -53,44 +53,45 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
     from roadproof.frontends.api.proofs import Proofs
     from roadproof.frontends.report.claims import details, line
 
     given = Prove.of(study_keywords(args, Prove))
-    asked = _asked(args, given)
+    question = _question(args, given)
 
     def show(name: str, result: "ClaimResult") -> None:
         clear()
-        print_at_once(details(result, asked) if asked.are_own else line(result), args.out is not None)
+        print_at_once(details(result, question) if question.are_own else line(result), args.out is not None)
 
     each = None
-    if args.json != "-" and (asked.are_own or args.verbose):
-        each = in_order((x.name for x in asked.tasks), show)
-    with listening(tell_stage if len(asked.tasks) == 1 else None):
-        found = Proofs.of(asked, given, each)
-    if args.json != "-" and not asked.are_own:
-        print(found)
+    if args.json != "-" and (question.are_own or args.verbose):
+        each = in_order((x.name for x in question.tasks), show)
+    with listening(tell_stage if len(question.tasks) == 1 else None):
+        proofs = Proofs.of(question, given, each)
+    if args.json != "-" and not question.are_own:
+        print(proofs)
     if given.kernel is not None:
-        found = found.put_to_kernel(given.kernel, given.jobs, Counter())
+        proofs = proofs.put_to_kernel(given.kernel, given.jobs, Counter())
         if args.json != "-":
-            print(found.kernel_text())
-    write_build_results(args, replace(found, places=_places(args, asked)))
+            print(proofs.kernel_text())
+    write_build_results(args, replace(proofs, places=_places(args, question)))
     if args.json:
-        write_json(found.as_data(), args.json)
-    tell_road(found.road)
-    return found.exit_code
+        write_json(proofs.as_data(), args.json)
+    tell_road(proofs.road)
+    return proofs.exit_code
 
 
-def _asked(args: argparse.Namespace, given: Prove) -> "ProveQuestion":
-    from roadproof.frontends.api.proofs import claims_asked
-    from roadproof.library.motion import read_under
+def _question(args: argparse.Namespace, given: Prove) -> "ProveQuestion":
+    from roadproof.frontends.api.proofs import prove_question
+    from roadproof.library.motion import read_assumed_claim
 
     home = read_definitions(args, Prove)
     written = _written(args)
     if args.file is not None and not (written or args.claims):
         raise UsageError(f"{args.file} contains no claim: write one per paragraph")
-    what = [*args.claims, *(read_under(home.specification, x.text) for x in written)]
-    return claims_asked(home, what, args.sets[0] if args.sets else None, given)
+    what = [*args.claims, *(read_assumed_claim(home.specification, x.text) for x in written)]
+    return prove_question(home, what, args.sets[0] if args.sets else None, given)
 
 
 def _written(args: argparse.Namespace) -> "list[WrittenClaim]":
@@ -100,11 +101,13 @@ def _written(args: argparse.Namespace) -> "list[WrittenClaim]":
     return [] if args.file is None else read_claims(args.file)
 
 
-def _places(args: argparse.Namespace, asked: "ProveQuestion") -> "dict[str, Location]":
-    """Where the claims of a file are written, by ``task.name``."""
+def _places(args: argparse.Namespace, question: "ProveQuestion") -> "dict[str, Location]":
+    """Return where the claims of a file are written, by ``task.name``."""
+    written = _written(args)
+    if not written:
+        return {}
     from roadproof.frontends.report.cases import Location
 
-    written = _written(args)
-    tasks = asked.tasks[len(asked.tasks) - len(written) :]
+    tasks = question.tasks[len(question.tasks) - len(written) :]
     places = (Location(str(args.file), x.at.line, x.at.column) for x in written)
     return dict(zip((x.name for x in tasks), places, strict=True))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from roadproof.errors import InputError
-from roadproof.evidence.answers import show as kept
+from roadproof.evidence.answers import show as show_data
 from roadproof.evidence.answers.tree import claim_node, definition_node
 from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
@@ -18,14 +18,14 @@ from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.terminal import width_of_terminal
 from roadproof.frontends.settings.commands import Show
 from roadproof.library.elaborate import read_claim, signature
-from roadproof.library.scenario_references import numbers_called, one_called, refuse_unknown
+from roadproof.library.scenario_references import number_by_name, numbers_by_name, refuse_unknown
 from roadproof.library.scenarios import name_of, number_in
-from roadproof.library.specification import Specification, unknown
-from roadproof.library.uses import used_in
+from roadproof.library.specification import Specification, unknown_name
+from roadproof.library.uses import parts_of_claim
 from roadproof.library.words import Words, words_of
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
-from roadproof.logic.first_instant import told_first_instants
+from roadproof.logic.first_instant import first_instant_warnings
 from roadproof.logic.latex import align, latex
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.restore import as_syntax, term_as_syntax
@@ -49,7 +49,7 @@ OPTIONS = Show
 
 
 @dataclass(frozen=True)
-class About:
+class ScenarioIntroduction:
     """A scenario in words, and the set that it is of where that changes another."""
 
     words: Words
@@ -58,7 +58,7 @@ class About:
 
 @dataclass(frozen=True)
 class Exhibit:
-    """What is on show: a claim, or definitions with the parameters that they speak of, or all three.
+    """The content of ``show``: a claim, or definitions with the parameters that they speak of, or all three.
 
     ``about``: the scenario that it is, in words; ``hints``: first instants that it asks for.
     """
@@ -66,7 +66,7 @@ class Exhibit:
     claim: Claim | None
     definitions: tuple[Definition, ...] = ()
     parameters: tuple[ParameterDeclaration, ...] = ()
-    about: About | None = None
+    about: ScenarioIntroduction | None = None
     hints: tuple[str, ...] = ()
 
 
@@ -77,10 +77,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    """Run the command; return its exit code."""
     specification, what = read_definitions(args, Show).specification, args.what.strip()
-    numbers = numbers_called(specification, what)
+    numbers = numbers_by_name(specification, what)
     if args.format == "json" or not numbers:
-        one_called(specification, what)  # refuses a name of several, as JSON shows one thing, and half a name
+        number_by_name(
+            specification, what
+        )  # refuses a name of several, as JSON shows one thing, and half a name
     exhibits = [_find(specification, x, args.expand) for x in map(str, numbers or (what,))]
     if args.format == "json":
         write_json(_as_json(exhibits[0], specification), "-")
@@ -104,9 +107,9 @@ def _find(specification: Specification, what: str, expand: bool) -> Exhibit:
     return exhibit if number is None else replace(exhibit, about=_about(specification, number))
 
 
-def _about(specification: Specification, number: int) -> About:
+def _about(specification: Specification, number: int) -> ScenarioIntroduction:
     block = specification.library.sets[specification.set_name]
-    return About(words_of(specification, number), block if block.parent else None)
+    return ScenarioIntroduction(words_of(specification, number), block if block.parent else None)
 
 
 def _find_claim(specification: Specification, what: str, expand: bool) -> Exhibit:
@@ -114,19 +117,19 @@ def _find_claim(specification: Specification, what: str, expand: bool) -> Exhibi
     formula = read_claim(specification, what).formula
     if expand:
         shown = Claim(claim.given, as_syntax(formula, expand=True))
-        return Exhibit(shown, hints=told_first_instants(formula))
-    used = used_in(specification, claim)
+        return Exhibit(shown, hints=first_instant_warnings(formula))
+    used = parts_of_claim(specification, claim)
     described = _described(specification, used.definitions)
-    return Exhibit(claim, described, used.parameters, hints=told_first_instants(formula))
+    return Exhibit(claim, described, used.parameters, hints=first_instant_warnings(formula))
 
 
 def _find_definition(specification: Specification, name: str, expand: bool) -> Exhibit:
     if name not in specification.definitions:
-        raise InputError(unknown("definition", name, specification.definitions))
+        raise InputError(unknown_name("definition", name, specification.definitions))
     claim = _application(specification, specification.definitions[name])
     if not expand:
         stated = text(_compared(claim) if _is_number(specification, claim) else claim)
-        used = used_in(specification, read_claim(specification, stated).claim)
+        used = parts_of_claim(specification, read_claim(specification, stated).claim)
         return Exhibit(None, _described(specification, used.definitions), used.parameters)
     if not _is_number(specification, claim):
         return Exhibit(Claim(claim.given, as_syntax(read_claim(specification, text(claim)).formula, True)))
@@ -158,7 +161,7 @@ def _compared(claim: Claim) -> Claim:
 
 
 def _is_number(specification: Specification, claim: Claim) -> bool:
-    """Whether the claim compares as a number does; mistakes elsewhere in it make no difference here."""
+    """Return whether the claim compares as a number does; mistakes elsewhere in it are ignored."""
     try:
         read_claim(specification, text(_compared(claim)))
     except InputError:
@@ -169,7 +172,7 @@ def _is_number(specification: Specification, claim: Claim) -> bool:
 def _as_text(exhibit: Exhibit) -> str:
     width = min(_WIDTH, width_of_terminal() or _WIDTH)
     blocks = [
-        "\n".join(f"# {line}" for line in _said(exhibit.about)),
+        "\n".join(f"# {line}" for line in _introduction(exhibit.about)),
         "" if exhibit.claim is None else text(exhibit.claim, width),
         "\n".join(text(definition, width) for definition in exhibit.definitions),
         "\n".join(_declaration(parameter) for parameter in exhibit.parameters),
@@ -178,7 +181,7 @@ def _as_text(exhibit: Exhibit) -> str:
     return "\n\n".join(block for block in blocks if block)
 
 
-def _said(about: About | None) -> Iterator[str]:
+def _introduction(about: ScenarioIntroduction | None) -> Iterator[str]:
     """The sentence first; what a set changes is said last."""
     if about is None:
         return
@@ -204,17 +207,20 @@ def _as_latex(exhibit: Exhibit) -> str:
 
 def _as_json(exhibit: Exhibit, specification: Specification) -> JsonObject:
     claim = exhibit.claim
-    answer = kept.Answer(
-        **heading(kept.SCHEMA, specification.library),
+    answer = show_data.ShowData(
+        **heading(show_data.SCHEMA, specification.library),
         set=specification.set_name,
         options=specification.options,
         scenario=None if exhibit.about is None else exhibit.about.words,
-        formula=None if claim is None else kept.ShownFormula(text=text(claim), tree=claim_node(claim)),
+        formula=None
+        if claim is None
+        else show_data.ShownFormulaData(text=text(claim), tree=claim_node(claim)),
         definitions=tuple(
-            kept.Definition(name=x.name, text=text(x), tree=definition_node(x)) for x in exhibit.definitions
+            show_data.ShownDefinitionData(name=x.name, text=text(x), tree=definition_node(x))
+            for x in exhibit.definitions
         ),
         parameters=tuple(
-            kept.Parameter(name=p.name, value=str(p.value), unit=p.unit, doc=p.doc)
+            show_data.ShownParameterData(name=p.name, value=str(p.value), unit=p.unit, doc=p.doc)
             for p in exhibit.parameters
         ),
     )

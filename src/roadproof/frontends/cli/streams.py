@@ -37,7 +37,7 @@ def make_streams_lenient() -> None:
 
 
 def takes_everything(stream: object) -> bool:
-    """Whether a stream is in an encoding of all of Unicode."""
+    """Return whether a stream is in an encoding of all of Unicode."""
     return (getattr(stream, "encoding", None) or "utf-8").lower().replace("_", "-").startswith("utf")
 
 
@@ -48,15 +48,15 @@ def forget_output() -> None:
     os.close(nothing)
 
 
-def print_at_once(text: str, kept: bool) -> None:
-    """Print a part of an answer; ``kept``: its evidence is, whether or not the reader has gone away.
+def print_at_once(text: str, is_stored: bool) -> None:
+    """Print a part of an answer; ``is_stored``: its evidence is, whether or not the reader has gone away.
 
     Raises ``BrokenPipeError`` where nothing is kept.
     """
     try:
         print(text, flush=True)
     except BrokenPipeError:
-        if not kept:
+        if not is_stored:
             raise
         forget_output()
 

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 
 from roadproof.frontends.cli import progress
-from roadproof.runtime.worker import OUTSIDE, Fork, dismiss, ended_by, work_for
+from roadproof.runtime.worker import OUTSIDE, Fork, become_child_of, describe_exit, dismiss
 from roadproof.verdict import ExitCode
 
 GRACE = 2.0  # seconds that the command has to remove half-written files when it is to end
@@ -34,20 +34,20 @@ def supervise(command: Callable[[], int]) -> int:
         return command()
     signals = {s for s in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(s) is not signal.SIG_IGN}
     signal.pthread_sigmask(signal.SIG_BLOCK, signals)
-    told, telling = os.pipe()
+    read_end, write_end = os.pipe()
     parent = os.getpid()
     child = Fork(os.fork())
     if child.pid == 0:
-        os.close(told)
-        progress.report_to(telling)
-        work_for(parent, _interrupt)
+        os.close(read_end)
+        progress.report_to(write_end)
+        become_child_of(parent, _interrupt)
         return command()
-    os.close(telling)
+    os.close(write_end)
     try:
         for number in signals:
             signal.signal(number, _raise_ended)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, signals)
-        _listen(told)
+        _listen(read_end)
         child.join()
     except _EndedError as ended:
         for number in signals:
@@ -81,22 +81,22 @@ def _code_of(child: Fork) -> int:
     if code >= 0:
         return code
     if code == -signal.SIGKILL:
-        told = "what was written before is whole, what is missing is unknown"
-        _say(f"ended by {ended_by(code)}, {OUTSIDE}: {told}")
+        remark = "what was written before is whole, what is missing is unknown"
+        _say(f"ended by {describe_exit(code)}, {OUTSIDE}: {remark}")
         return ExitCode.UNKNOWN
-    _say(f"this is our fault: ended by {ended_by(code)}; report it with the command line.")
+    _say(f"this is our fault: ended by {describe_exit(code)}; report it with the command line.")
     return ExitCode.OUR_FAULT
 
 
-def _listen(told: int) -> None:
+def _listen(read_end: int) -> None:
     """Hear how far the command is until it ends; say it now and then, unless a terminal shows it."""
-    begun = last = time.monotonic()
+    start = last = time.monotonic()
     shown = sys.stderr is None or sys.stderr.isatty() or bool(os.environ.get(progress.QUIET))
     word, rest = "still working", b""
     while True:
-        ready, _, _ = select.select([told], [], [], max(0.0, last + BEAT - time.monotonic()))
+        ready, _, _ = select.select([read_end], [], [], max(0.0, last + BEAT - time.monotonic()))
         if ready:
-            heard = os.read(told, 65536)
+            heard = os.read(read_end, 65536)
             if not heard:
                 return
             *lines, rest = (rest + heard).split(b"\n")
@@ -106,7 +106,7 @@ def _listen(told: int) -> None:
         if time.monotonic() >= last + BEAT:
             last = time.monotonic()
             if not shown:
-                _say(f"{word} (after {progress.duration(last - begun)})")
+                _say(f"{word} (after {progress.duration(last - start)})")
 
 
 def _say(text: str) -> None:

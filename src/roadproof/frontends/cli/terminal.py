@@ -3,12 +3,13 @@
 import os
 import re
 import sys
+from collections.abc import Mapping
 from typing import Any, TextIO, cast
 
 from roadproof.verdict import Verdict
 
 _RED, _GREEN, _YELLOW = 31, 32, 33
-_COLOURS = {
+_COLOURS: Mapping[Verdict, int] = {
     Verdict.PROVED: _GREEN,
     Verdict.WITNESSED: _GREEN,
     Verdict.COVERED: _GREEN,
@@ -42,7 +43,7 @@ def width_of_terminal() -> int | None:
 
 
 def wants_colour() -> bool:
-    """Whether stdout takes colours, by ``NO_COLOR``, ``FORCE_COLOR`` and ``TERM``; the first one decides."""
+    """Return whether stdout takes colours, by ``NO_COLOR``, ``FORCE_COLOR`` and ``TERM``, in this order."""
     if os.environ.get("NO_COLOR"):
         return False
     if os.environ.get("FORCE_COLOR"):
@@ -96,6 +97,7 @@ class _Dressed:
         self._rest = ""
 
     def write(self, text: str) -> int:
+        """Write text with its verdicts in colour, whole lines at a time."""
         *lines, self._rest = (self._rest + text).split("\n")
         for line in lines:
             self._stream.write(self._dress(line) + "\n")

@@ -36,35 +36,38 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.frontends.api.drives import drives_asked, files_written, views_of, witness_all
+    """Run the command; return its exit code."""
+    from roadproof.frontends.api.drives import files_written, views_of, witness_all, witness_question
     from roadproof.frontends.report.witness import as_line
 
     what = some_or_all(args)
     given = Witness.of(study_keywords(args, Witness))
     views = views_of(given)
-    question = drives_asked(what, read_definitions(args, Witness), given)
+    question = witness_question(what, read_definitions(args, Witness), given)
     plain = args.json != "-"
     written: list[str] = []
 
     def show(name: str, result: "SearchResult") -> None:
+        """Print a result with the files written for it."""
         files = [] if args.out is None else files_written(question, name, result, views, Path(args.out))
         written.extend(files)
         clear()
-        told = f"\n  written to {args.out}: {', '.join(files)}" if files else ""
+        files_note = f"\n  written to {args.out}: {', '.join(files)}" if files else ""
         line = as_line(result, args.verbose)
-        print_at_once(line + told, args.out is not None)
+        print_at_once(line + files_note, args.out is not None)
 
     each = in_order(tuple(question.named), show) if plain else None
     with listening(tell_stage if len(question.named) == 1 else None):
-        found = witness_all(question, given, each)
+        witnesses = witness_all(question, given, each)
     if args.out is not None and not written and plain:
         print(f"no drive was found, so nothing was written to {args.out}")
-    write_build_results(args, found)
+    write_build_results(args, witnesses)
     if args.json:
-        write_json(found.as_data(), args.json)
-    if plain and len(found.outcomes) > 1:
-        print(found.summary)
+        write_json(witnesses.as_data(), args.json)
+    if plain and len(witnesses.outcomes) > 1:
+        print(witnesses.summary)
     if plain:
-        print(*found.supposed, sep="\n", end="\n" * bool(found.supposed))
-    tell_road(found.road)
-    return found.exit_code
+        lines = (*witnesses.supposed, *given.remarks(question, witnesses.found.answers))
+        print(*lines, sep="\n", end="\n" * bool(lines))
+    tell_road(witnesses.road)
+    return witnesses.exit_code

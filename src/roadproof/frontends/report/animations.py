@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.extension import entries, imported
+from roadproof.extension import entries, import_entry
 from roadproof.library.specification import Library
 
 
@@ -13,7 +13,7 @@ class Animation(Protocol):
 
     @property
     def ending(self) -> str:
-        """How the names of its files end, behind the name of the drive."""
+        """The ending of its files, behind the name of the drive."""
 
     def need(self) -> None:
         """Raises ``MissingSolverError`` where a program that it needs is not there."""
@@ -24,4 +24,4 @@ class Animation(Protocol):
 
 def animations() -> Mapping[str, Animation]:
     """Return the animations by the name of their format."""
-    return {name: imported(entry) for name, entry in entries("animations").items()}
+    return {name: import_entry(entry) for name, entry in entries("animations").items()}

@@ -1,21 +1,27 @@
 """Settled claims to look at: a line, a table, or all details."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby
+from typing import TYPE_CHECKING
 
-from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.checking import other_values
-from roadproof.evidence.countermodel import Countermodel
-from roadproof.evidence.judged import JudgedDrive
-from roadproof.frontends.report.sheet import Column, Sheet
-from roadproof.library.motion import Assumption, is_moving, statement
+from roadproof.evidence.drive_file import other_values
+from roadproof.library.assumption import assumes_motion, claim_statement
 from roadproof.library.scenarios import LANE
-from roadproof.library.specification import Library, Specification
-from roadproof.library.words import called_by, legend
-from roadproof.questions.prove import ClaimResult, ProveQuestion
+from roadproof.library.words import legend, words_named_in
 from roadproof.world.motion import state_at
-from roadproof.world.road import Road
+
+if TYPE_CHECKING:
+    from roadproof.evidence.certificate import Certificate
+    from roadproof.evidence.countermodel import Countermodel
+    from roadproof.evidence.judged import JudgedDrive
+    from roadproof.frontends.report.sheet import Sheet
+    from roadproof.library.assumption import Assumption
+    from roadproof.library.specification import Library, Specification
+    from roadproof.questions.prove import ClaimResult, ProveQuestion
+    from roadproof.world.road import Road
 
 
 def line(answered: ClaimResult) -> str:
@@ -44,24 +50,26 @@ def table(answered: Sequence[ClaimResult], specification: Specification) -> str:
     for (name, title, set_name), group in groupby(
         answered, key=lambda s: (s.task.id, s.task.title, s.task.set_name)
     ):
-        found = list(group)
-        verdicts = sorted({verdict(s) for s in found})
-        expected = found[0].expected
-        slowest = max(s.seconds for s in found)
+        results = list(group)
+        verdicts = sorted({verdict(s) for s in results})
+        expected = results[0].expected
+        slowest = max(s.seconds for s in results)
         took = f"{slowest:5.2f} s" if slowest else ""  # none of a recalled answer
-        mark = "" if all(s.verdict is expected for s in found) else f"   expected {expected}"
-        count = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
+        mark = "" if all(s.verdict is expected for s in results) else f"   expected {expected}"
+        count = f"{len(results)} claim{'s' if len(results) > 1 else ''}"
         rows.append(f"{name:3} {set_name:5} {count:10} {', '.join(verdicts):8} {took:7}  {title}{mark}")
-        rows += [f"      {line(s)} {s.reason}" for s in found if s.verdict is not s.expected]
+        rows += [f"      {line(s)} {s.reason}" for s in results if s.verdict is not s.expected]
     values = sorted({value for s in answered for value in s.task.assuming})
     rows += [f"each at those of {', '.join(values)} that it speaks of"] if values else []
-    words = called_by(specification, (s.task.claim for s in answered))
+    words = words_named_in(specification, (s.task.claim for s in answered))
     rows += [f"  {line}" for line in legend(words)]
     return "\n".join(rows)
 
 
 def sheet_of(answered: Sequence[ClaimResult]) -> Sheet[ClaimResult]:
     """An entry for each claim."""
+    from roadproof.frontends.report.sheet import Column, Sheet  # here: a line needs no table
+
     return Sheet(
         (
             Column("claim", lambda x: " ".join(x.task.claim.split()), look="code"),
@@ -84,20 +92,22 @@ def _premises(answer: ClaimResult) -> str:
     return "" if certificate is None else "; ".join(certificate.assumed.premises)
 
 
-def details(answered: ClaimResult, asked: ProveQuestion) -> str:
+def details(answered: ClaimResult, question: ProveQuestion) -> str:
     """The verdict with its evidence: certificate in numbers, drive or trace.
 
-    Also what scenarios are called, and what is supposed of own signals.
+    Also what scenarios are called, and what is supposed of custom signals.
     """
     task = answered.task
-    lines = [f"{verdict(answered)}  {statement(task.assuming, ' '.join(task.claim.split()))}"]
+    lines = [f"{verdict(answered)}  {claim_statement(task.assuming, ' '.join(task.claim.split()))}"]
     lines += [
-        f"  {words}" for words in called_by(asked.specification_of(task), [task.claim]).values() if words.name
+        f"  {words}"
+        for words in words_named_in(question.specification_of(task), [task.claim]).values()
+        if words.name
     ]
     within = "drives up to a horizon" if answered.is_bounded else "dense time, all horizons"
     took = f", {answered.seconds:.2f} s" if answered.seconds else ""
     lines.append(f"  set {task.set_name}, {within}{took}")
-    lines += [f"  {said}" for said in asked.supposed(task)]
+    lines += [f"  {text}" for text in question.supposed(task)]
     if answered.reason:
         lines.append(f"  {answered.reason}")
     if answered.certificate is not None:
@@ -110,7 +120,7 @@ def details(answered: ClaimResult, asked: ProveQuestion) -> str:
         )
         lines += _show_premises(certificate.assumed)
     if answered.drive is not None:
-        lines += _show_drive(answered.drive, asked.specification_of(task).library)
+        lines += _show_drive(answered.drive, question.specification_of(task).library)
         lines += [f"  this drive lies outside the {answered.beyond}"] if answered.beyond else []
     elif answered.trace is not None:
         lines += _show_countermodel(answered.trace)
@@ -126,7 +136,7 @@ def _values_of(certificate: Certificate) -> str:
 def _show_premises(assumed: Assumption) -> list[str]:
     """The premises of a certificate: limits, facts about motion and inductions; and the other limits."""
     lines = []
-    if is_moving(assumed.said):
+    if assumes_motion(assumed.texts):
         lines += [f"  of the limits: {', '.join(assumed.limits)}"] if assumed.limits else []
         lines += [f"  of motion: {', '.join(map(str, assumed.facts))}"] if assumed.facts else []
         if not lines:
@@ -138,10 +148,10 @@ def _show_premises(assumed: Assumption) -> list[str]:
 
 
 def _show_drive(judged: JudgedDrive, library: Library) -> list[str]:
-    """Where each vehicle starts and how its speed goes; the whole drive is in the file of --out."""
+    """Return where each vehicle starts and how its speed goes; the whole drive is in the file of --out."""
     named = judged.file.lanes
     lanes = named[LANE] if set(named) == {LANE} else ", ".join(f"{k}={v}" for k, v in named.items())
-    if not judged.file.drive.vehicles and not judged.file.drive.own:
+    if not judged.file.drive.vehicles and not judged.file.drive.custom_signals:
         values = ", ".join(other_values(judged.file, library))
         at_values = f", with {values}" if values else ""
         return [f"  false on a drive without vehicles, judged exactly in dense time{at_values}"]
@@ -152,7 +162,7 @@ def _show_drive(judged: JudgedDrive, library: Library) -> list[str]:
         end = state_at(motion, last)
         moved = f", moves to d={_short(end.d)} m" if abs(end.d - motion.d) > 1 else ""
         lines.append(f"    {name} {start}, {_short(motion.v_lon)} -> {_short(end.v_lon)} m/s{moved}")
-    for (signal, vehicle), course in judged.file.drive.own.items():
+    for (signal, vehicle), course in judged.file.drive.custom_signals.items():
         values = ", ".join(f"{_short(value)} from {_short(since)} s" for since, value in course[:4])
         more = ", …" if len(course) > 4 else ""
         lines.append(f"    {signal}{f'({vehicle})' if vehicle else ''} is {values}{more}")
@@ -166,7 +176,7 @@ def _short(value: Fraction) -> str:
 def _show_countermodel(countermodel: Countermodel) -> list[str]:
     lines = [
         "  false on this trace over points in time, judged; it may jump:",
-        f"    between two instants it keeps the state of the one {countermodel.held}",
+        f"    between two instants it keeps the state of the one {countermodel.interpolation}",
     ]
     if countermodel.loop is not None:
         loop = countermodel.loop
@@ -198,7 +208,7 @@ def _lane(lane: str, road: Road) -> str:
         f"{x.zone} [{_end(x.s[0])}, {_end(x.s[1])}] x [{_number(x.d[0])}, {_number(x.d[1])}]"
         for x in road.lanelets_of(lane)
     )
-    beside = road.beside(lane)
+    beside = road.adjacent_lanes(lane)
     return f"{lane}: {shown}" + (f"; beside {', '.join(beside)}" if beside else "")
 
 

@@ -6,8 +6,8 @@ from roadproof.frontends.report.sheet import Column, Sheet, as_outline
 from roadproof.library.scenarios import scenario_number
 from roadproof.library.specification import Query, Specification
 from roadproof.library.words import words_of
-from roadproof.logic.custom_names import told_freedom
-from roadproof.logic.first_instant import told_first_instants
+from roadproof.logic.custom_names import freedom_lines
+from roadproof.logic.first_instant import first_instant_warnings
 from roadproof.logic.formula import conjunction
 from roadproof.questions.compare import Comparison, Direction
 
@@ -31,7 +31,7 @@ def as_text(comparison: Comparison, specification: Specification) -> str:
         _SENTENCES[comparison.relation],
     ]
     both = conjunction(comparison.first.formula, comparison.second.formula)
-    lines += [f"  {said}" for said in (*told_freedom(both), *told_first_instants(both))]
+    lines += [f"  {text}" for text in (*freedom_lines(both), *first_instant_warnings(both))]
     return "\n".join([*lines, *as_outline(sheet_of(comparison))])
 
 
@@ -59,7 +59,7 @@ def sheet_of(comparison: Comparison) -> Sheet[tuple[str, Direction]]:
 
 
 def _called(query: Query, specification: Specification) -> Iterator[str]:
-    """What a side is called that is one scenario."""
+    """Yield the title of a side that is one scenario."""
     number = scenario_number(query)
     if number is not None and (name := words_of(specification, number).name):
         yield f"        {name}"

@@ -9,9 +9,9 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.report import drive_data as data
 from roadproof.frontends.report.figures import draw_box, hide_frame, legend_beside, make_figure, name_rows
-from roadproof.frontends.report.plane import View, extent, extent_of, views_along
+from roadproof.frontends.report.plane import RoadView, extent, extent_of, views_along
 from roadproof.library.specification import Library
-from roadproof.world.length_error import told_bends
+from roadproof.world.length_error import bend_note
 from roadproof.world.motion import State, state_at
 from roadproof.world.road import Zone
 
@@ -57,12 +57,12 @@ def draw_drive(file: DriveFile, library: Library, title: str = "") -> Any:
 
 
 def _title(file: DriveFile, library: Library, title: str, dangers: Sequence[data.Danger]) -> str:
-    """What is shown in words, on which road, and when danger begins."""
+    """Return the title of a drive: formula, road, and when danger begins."""
     lines = title.splitlines() or data.heading_of(file, library)
     lanes = "".join(f", {name} = {lane}" for name, lane in file.lanes.items())
     lines.append(f"set {file.set_name}, road {file.road.name}{lanes}")
     lines[-1] += "".join(f"; {x}" for x in dangers)
-    lines.append(told_bends(file.road))
+    lines.append(bend_note(file.road))
     return "\n".join(piece for line in lines if line for piece in wrap(line, 120))
 
 
@@ -103,8 +103,8 @@ def _draw_roads(axes: Sequence[Any], file: DriveFile, colours: Mapping[str, str]
     axes[-1].set_xlabel("m to scale, as seen from the middle" if views else along, fontsize=7)
 
 
-def _snapshots(file: DriveFile) -> tuple[list[Fraction], data.Span, list[View]]:
-    """Some instants, what is seen along the road then, and from where, if it has bends."""
+def _snapshots(file: DriveFile) -> tuple[list[Fraction], data.Span, list[RoadView]]:
+    """Return some instants, the visible span of the road, and the views of the road then, if it has bends."""
     times = [file.horizon * k / (SNAPSHOTS - 1) for k in range(SNAPSHOTS)]
     window = data.window_of(file, times)
     subject = file.drive.vehicles[data.vehicles_of(file)[0]]
@@ -122,7 +122,7 @@ def _road_height(file: DriveFile) -> float:
     return min(max(usual, ROAD_INCHES * (top - bottom) / (right - left)), HIGHEST)
 
 
-def _bent_snapshot(axes: Any, road: data.ShownRoad, view: View, seen: data.Box) -> None:
+def _bent_snapshot(axes: Any, road: data.ShownRoad, view: RoadView, seen: data.Box) -> None:
     for zone, along, (right, left) in road.pieces:
         axes.fill(*zip(*view.outline((*along, right, left)), strict=True), color=SHADES[zone], lw=0, zorder=1)
         for d in (right, left):
@@ -156,7 +156,7 @@ def _vehicles(
     colours: Mapping[str, str],
     time: Fraction,
     size: tuple[float, float],
-    view: View | None,
+    view: RoadView | None,
 ) -> None:
     """The boxes of all vehicles and their names; ``size``: metres shown along, inches across."""
     origin = state_at(file.drive.vehicles[next(iter(colours))], time).s
@@ -175,6 +175,8 @@ def _vehicles(
             axes.fill(*zip(*shapes[name], strict=True), color=colour, lw=0, zorder=3)
         else:
             draw_box(axes, boxes[name], colour)
+        if boxes[name][2] > high or boxes[name][3] < low:
+            continue  # beside the road that is shown; its name would take the room of the road
         left, _, bottom, top = names[name]
         behind = {"fc": "white", "ec": "none", "alpha": 0.7, "pad": 0.4}
         axes.text(
@@ -195,9 +197,9 @@ def _share_time(axes: Sequence[Any], horizon: float, dangers: Sequence[data.Dang
         one.sharex(axes[-1])
         one.tick_params(axis="x", labelbottom=False)
     for danger in dangers:
-        told = f"danger with {danger.other} begins" if len(dangers) > 1 else "danger begins"
+        label = f"danger with {danger.other} begins" if len(dangers) > 1 else "danger begins"
         axes[0].text(
-            *(danger.begins, 1.02, f" {told} "),
+            *(danger.begins, 1.02, f" {label} "),
             fontsize=7,
             color=DANGER,
             ha="left" if danger.begins < 0.8 * horizon else "right",

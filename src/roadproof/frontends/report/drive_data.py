@@ -1,4 +1,4 @@
-"""What the picture of a drive shows, as data: strips of truth, distances against RSS, danger, the road.
+"""The data of a drive's picture: strips of truth, distances against RSS, danger and road.
 
 Distances and danger are the library's own: its definitions are bound and judged, no formula is written here.
 """
@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.extension import imported, listed
+from roadproof.extension import import_entry, list_entries
 from roadproof.library.bind import bind, values_with
 from roadproof.library.roles import vehicle_order
 from roadproof.library.scenarios import danger, too_near_ahead, too_near_left
@@ -18,9 +18,10 @@ from roadproof.library.specification import Library, Query, Specification
 from roadproof.library.words import words_of
 from roadproof.logic.formula import Application, Compare, Formula, nesting, subformulas
 from roadproof.runtime.records import dataclass
-from roadproof.semantics.exact.algebraic import approximate
-from roadproof.semantics.exact.exact import Judgement, judge
-from roadproof.semantics.exact.robust import robustness
+from roadproof.semantics.exact.algebraic import as_float
+from roadproof.semantics.exact.judging import Judgement, judge
+from roadproof.semantics.exact.samples import sample_margin
+from roadproof.semantics.exact.signals import DriveSignals, TermPieces
 from roadproof.semantics.exact.truth import TruthSet
 from roadproof.world.motion import states_at
 from roadproof.world.road import Road, Zone
@@ -33,7 +34,7 @@ ZONES: Mapping[Zone, str] = {"main": "main road", "merge": "merge zone", "depart
 
 @dataclass(frozen=True)
 class Strip:
-    """When a part of the formula is true, in seconds; ``depth``: in how many other parts it is."""
+    """The times (s) at which a part of the formula is true; ``depth``: in how many other parts it is."""
 
     name: str
     depth: int
@@ -66,7 +67,7 @@ class Distance:
 
 @dataclass(frozen=True)
 class Danger:
-    """When danger between two vehicles begins for the first time, in seconds."""
+    """The first time (s) of danger between two vehicles."""
 
     one: str
     other: str
@@ -78,7 +79,7 @@ class Danger:
 
 @dataclass(frozen=True)
 class ShownRoad:
-    """What of a road lies in a window along it; ``lanes``: name and middle; m.
+    """The part of a road in a window along it; ``lanes``: name and middle (m).
 
     ``pieces``: rectangles along × across with their zones.
     """
@@ -94,7 +95,7 @@ class ShownRoad:
 
 
 def vehicles_of(file: DriveFile) -> list[str]:
-    """SV first, the others by name."""
+    """Return the names of the vehicles, SV first, the others by name."""
     return vehicle_order(file.drive.vehicles)
 
 
@@ -112,11 +113,11 @@ def times_of(file: DriveFile, grain: Fraction = GRAIN) -> list[Fraction]:
 
 
 def _words_of(formula: Formula) -> dict[Application, str]:
-    """What parts of a formula mean that an extension has words for."""
-    found: dict[Application, str] = {}
-    for entry in listed("words"):
-        found |= imported(entry)(formula)
-    return found
+    """Return the phrases of extensions for parts of a formula."""
+    phrases: dict[Application, str] = {}
+    for entry in list_entries("words"):
+        phrases = import_entry(entry)(formula) | phrases
+    return phrases
 
 
 def strips_of(judgement: Judgement, horizon: Fraction) -> tuple[Strip, ...]:
@@ -135,21 +136,21 @@ def strips_of(judgement: Judgement, horizon: Fraction) -> tuple[Strip, ...]:
 def _spans(truth: TruthSet, horizon: float) -> Iterator[Span]:
     """The stretches of a truth set up to the horizon."""
     for span in truth.spans():
-        begin = approximate(span.begin.point)
+        begin = as_float(span.begin.point)
         if begin <= horizon:
-            yield begin, horizon if span.end is None else min(horizon, approximate(span.end.point))
+            yield begin, horizon if span.end is None else min(horizon, as_float(span.end.point))
 
 
 def dangers_of(file: DriveFile, library: Library) -> tuple[Danger, ...]:
     """The first danger of the first vehicle with each other one, as the file's definitions have it."""
     first, *others = vehicles_of(file)
     spans = {other: danger_spans(file, library, first, other) or () for other in others}
-    found = [Danger(first, other, times[0][0]) for other, times in spans.items() if times]
-    return tuple(sorted(found, key=lambda x: x.begins))
+    dangers = [Danger(first, other, times[0][0]) for other, times in spans.items() if times]
+    return tuple(sorted(dangers, key=lambda x: x.begins))
 
 
 def danger_spans(file: DriveFile, library: Library, one: str, other: str) -> tuple[Span, ...] | None:
-    """When two vehicles are in danger, in seconds; None where the library does not define danger."""
+    """Return the times (s) of danger between two vehicles; None where the library does not define danger."""
     formula = _bound(file, library, lambda home: danger(home, one, other))
     if formula is None:
         return None
@@ -159,7 +160,7 @@ def danger_spans(file: DriveFile, library: Library, one: str, other: str) -> tup
 def distances_of(
     file: DriveFile, library: Library, direction: Direction, grain: Fraction = GRAIN
 ) -> tuple[Distance, ...]:
-    """Of the first vehicle from each other one; those are left out that the library has no distance for."""
+    """Return the distances of the first vehicle from each other one for which the library has one."""
     first, *others = vehicles_of(file)
     made = (_distance(file, library, direction, (first, other), times_of(file, grain)) for other in others)
     return tuple(x for x in made if x is not None)
@@ -186,19 +187,19 @@ def _distance(
 def _gaps(
     file: DriveFile, direction: Direction, pair: tuple[str, str], times: Sequence[Fraction]
 ) -> list[tuple[float, float]]:
-    """How much further one vehicle is than another, by the points that are tracked, and the gap.
+    """Return how much further one vehicle is than another, by the points that are tracked, and the gap.
 
     The gap is from the front of one to the rear of the other, or from a left to a right side.
     """
     lower, higher = (file.drive.vehicles[name] for name in pair)
-    found = []
+    ends = []
     for a, b in zip(states_at(lower, times), states_at(higher, times), strict=True):
         if direction == "along":
             order, size = b.s - a.s, higher.length
         else:
             order, size = b.d - a.d, higher.width
-        found.append((float(order), float(order - size)))
-    return found
+        ends.append((float(order), float(order - size)))
+    return ends
 
 
 def _margins(
@@ -210,7 +211,7 @@ def _margins(
     if nearer is None:
         return None
     grain = times[1] if len(times) > 1 else GRAIN
-    return list(robustness(nearer, file.drive, grain, times[-1]).margins[nearer])
+    return list(sample_margin(nearer, TermPieces(DriveSignals(file.drive)), grain, len(times)))
 
 
 def too_near(home: Specification, direction: Direction, low: str, high: str) -> Query:
@@ -218,23 +219,23 @@ def too_near(home: Specification, direction: Direction, low: str, high: str) -> 
     return too_near_ahead(home, low, high) if direction == "along" else too_near_left(home, low, high)
 
 
-def nearer_in(formula: Formula) -> Formula | None:
+def nearer_in(formula: Formula) -> Compare | None:
     """The comparison in ``too_near`` whose margin is RSS distance less gap; None in another form."""
     comparisons = [x for x in subformulas(formula) if isinstance(x, Compare)]
     return comparisons[1] if len(comparisons) == 2 else None
 
 
-def _bound(file: DriveFile, library: Library, said: Callable[[Specification], Query]) -> Formula | None:
+def _bound(file: DriveFile, library: Library, query_of: Callable[[Specification], Query]) -> Formula | None:
     """A formula of the file's set on its road; None where the library has no such definitions."""
     try:
-        query = said(library.select(file.set_name, file.options))
+        query = query_of(library.select(file.set_name, file.options))
         return bind(query.formula, file.road, file.lanes, values_with(library, file.values))
     except RoadproofError:
         return None
 
 
 def window_of(file: DriveFile, times: Sequence[Fraction]) -> Span:
-    """What has to be seen along the road, in metres from the first vehicle: all of them at these times."""
+    """Return the window along the road (m from the first vehicle) with all vehicles at these times."""
     first, *_ = vehicles_of(file)
     origins = [x.s for x in states_at(file.drive.vehicles[first], times)]
     places = []
@@ -247,7 +248,7 @@ def window_of(file: DriveFile, times: Sequence[Fraction]) -> Span:
 
 
 def road_in(road: Road, origin: Fraction, window: Span) -> ShownRoad:
-    """What of a road is seen in a window around ``origin``."""
+    """Return the part of a road in a window around ``origin``."""
     pieces: list[tuple[Zone, Span, Span]] = []
     lanes: dict[str, float] = {}
     for lanelet in road.lanelets:

@@ -1,7 +1,7 @@
 """The one home of matplotlib: a figure with rows of axes, and its bytes."""
 
 import io
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from roadproof.errors import MissingSolverError
@@ -41,16 +41,6 @@ def _matplotlib() -> tuple[Any, Any]:
     return Figure, FigureCanvasAgg
 
 
-def shorten(text: Any, width: float) -> None:
-    """Leave out the middle of a drawn text until it is no wider than that (inches)."""
-    whole, wanted = text.get_text(), width * text.figure.dpi
-    share = wanted / max(wanted, text.get_window_extent().width)
-    for kept in range(int(len(whole) * share), 1, -1):
-        if text.get_window_extent().width <= wanted:
-            return
-        text.set_text(f"{whole[: kept - kept // 2]}…{whole[len(whole) - kept // 2 :]}")
-
-
 def draw_box(axes: Any, box: tuple[float, float, float, float], colour: str) -> None:
     """A vehicle's box: left, right, bottom, top."""
     from matplotlib.patches import Rectangle
@@ -60,7 +50,7 @@ def draw_box(axes: Any, box: tuple[float, float, float, float], colour: str) -> 
 
 
 def legend_beside(axes: Any) -> None:
-    """What the lines and colours of ``axes`` mean, to the right of them and off the curves."""
+    """Draw the legend of ``axes`` to their right, off the curves."""
     if axes.get_legend_handles_labels()[1]:
         axes.legend(fontsize=6, loc="upper left", bbox_to_anchor=(1.005, 1), borderaxespad=0, frameon=False)
 
@@ -70,19 +60,6 @@ def name_rows(axes: Any, names: Sequence[str]) -> None:
     axes.set_yticks(range(len(names)), names, fontsize=6, family="monospace", ha="left")
     axes.tick_params(axis="y", pad=3.62 * max(map(len, names), default=0) + 3, length=0)
     axes.set_ylim(len(names) - 0.4, -0.6)
-
-
-def draw_cell(axes: Any, x: int, y: int, colour: str, text: object = None, ink: str = "black") -> None:
-    """A cell of a heat map, one unit wide and high, with a text in it."""
-    axes.fill((x, x + 1, x + 1, x), (y, y, y + 1, y + 1), color=colour, ec="white", lw=0.8)
-    if text is not None:
-        axes.text(x + 0.5, y + 0.5, str(text), fontsize=8, color=ink, ha="center", va="center")
-
-
-def name_cells(axes: Any, columns: Sequence[str], rows: Sequence[str], size: int) -> None:
-    """Names below and beside the middles of cells."""
-    axes.set_xticks([k + 0.5 for k in range(len(columns))], columns, fontsize=size)
-    axes.set_yticks([k + 0.5 for k in range(len(rows))], rows, fontsize=size)
 
 
 def hide_frame(axes: Any, sides: Sequence[str] = ("top", "right", "bottom", "left")) -> None:
@@ -102,7 +79,7 @@ def as_bytes(figure: Any) -> dict[str, bytes]:
     """The figure as PNG and SVG; the same figure gives the same SVG."""
     import matplotlib
 
-    settle(figure)
+    fix_layout(figure)
     made: dict[str, bytes] = {}
     with matplotlib.rc_context({"svg.hashsalt": "roadproof"}):
         for kind, metadata in (("png", {}), ("svg", {"Date": None})):
@@ -112,24 +89,7 @@ def as_bytes(figure: Any) -> dict[str, bytes]:
     return made
 
 
-def draw_again(figure: Any, moving: Sequence[Any]) -> Callable[[], bytes]:
-    """A function that draws ``moving`` artists where they are then, above all others, as RGBA bytes."""
-    for artist in moving:
-        artist.set_animated(True)
-    canvas = figure.canvas
-    canvas.draw()
-    still = canvas.copy_from_bbox(figure.bbox)
-
-    def pixels() -> bytes:
-        canvas.restore_region(still)
-        for artist in moving:
-            figure.draw_artist(artist)
-        return bytes(canvas.buffer_rgba())
-
-    return pixels
-
-
-def settle(figure: Any) -> None:
+def fix_layout(figure: Any) -> None:
     """Lay a figure out once and for all; the solver that does so differs in the last digits."""
     figure.set_dpi(_DPI)
     figure.draw_without_rendering()

@@ -1,4 +1,4 @@
-"""Where places of a road with bends are in a picture: one projection from (s, d), which all pictures use.
+"""The projection from (s, d) of a road with bends to a picture, which all pictures use.
 
 A view looks at the road from above, so that its direction at one place is to the right. Boxes are in m:
 s from ``origin``, and d. Vehicles are rectangles in the direction of the road at their centre.
@@ -23,7 +23,7 @@ STEP = 2.0
 
 
 @dataclass(frozen=True)
-class View:
+class RoadView:
     """The plane in m from the place (``s``, ``d``) of a road; x along the road there, y to its left."""
 
     line: ReferenceLine
@@ -80,16 +80,16 @@ class View:
             place += sum(dash)
 
 
-def views_along(road: Road, origins: Iterable[Fraction], window: Span) -> list[View]:
+def views_along(road: Road, origins: Iterable[Fraction], window: Span) -> list[RoadView]:
     """Views from the middle of a ``window`` around each of some places; none where the road is straight."""
     if road.line is None:
         return []
     middle = sum(window) / 2, sum(road_in(road, Fraction(0), window).across) / 2
-    return [View(road.line, float(origin), *middle) for origin in origins]
+    return [RoadView(road.line, float(origin), *middle) for origin in origins]
 
 
-def extent_of(views: Iterable[View], window: Span, across: Span) -> Box:
-    """What a road takes of the plane in a window, in m, as some views see it."""
+def extent_of(views: Iterable[RoadView], window: Span, across: Span) -> Box:
+    """Return the box (m) of the road's part in a window, as some views see it."""
     box = (*window, *across)
     return extent(point for view in views for point in view.outline(box))
 

@@ -8,14 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
-from roadproof.frontends.report.cases import (
-    Case,
-    Location,
-    Rule,
-    State,
-    named_definitions,
-    state_of,
-)
+from roadproof.frontends.report.cases import Case, CaseRule, Location, State, named_definitions, state_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Specification
 from roadproof.logic.syntax import Claim
@@ -27,32 +20,32 @@ if TYPE_CHECKING:
 
 
 def written(case: Case, specification: Specification, claim: Claim) -> Case:
-    """The same, with the definitions that it names; it is at the first of them where it has no place."""
+    """Return the case with the definitions that it names, at the first of them where it has no place."""
     named = named_definitions(specification, claim)
     first = named[0][1] if named else None
     return replace(case, place=case.place or first, related=named)
 
 
 def claim_cases(
-    asked: ProveQuestion,
+    question: ProveQuestion,
     answers: Sequence[ClaimResult],
     files: Mapping[str, Path],
     places: Mapping[str, Location],
 ) -> Iterator[Case]:
     """A case for each claim. ``files``: evidence, ``places``: where it is written, both by ``name``."""
     for x in answers:
-        task, specification = x.task, asked.specification_of(x.task)
+        task, specification = x.task, question.specification_of(x.task)
         text = " ".join(task.claim.split())
         expected = "" if x.verdict is x.expected else f", expected {x.expected}"
         reason = x.reason
         by = x.refuted_by
-        told = f"{x.verdict}{f' by a {by}' if by else ''}{expected}: {text}{reason and f' ({reason})'}"
+        message = f"{x.verdict}{f' by a {by}' if by else ''}{expected}: {text}{reason and f' ({reason})'}"
         case = Case(
             suite=f"claims in {task.set_name}",
             name=text if task.title == "" else f"{task.name}: {text}",
             state=state_of(x.verdict, (x.expected,)),
             rule=x.verdict,
-            message=told,
+            message=message,
             place=places.get(x.name),
             evidence=files.get(x.name),
             seconds=x.seconds,
@@ -81,7 +74,10 @@ def finding_cases(findings: Sequence[Finding], strict: bool) -> Iterator[Case]:
 
     Answers without evidence are undecided if ``strict``, and where nothing else was checked.
     """
-    rules = {Acceptance.REJECTED: Rule.REJECTED, Acceptance.UNREADABLE: Rule.UNREADABLE}
+    rules: Mapping[Acceptance, CaseRule] = {  # partial: the other outcomes break no rule
+        Acceptance.REJECTED: CaseRule.REJECTED,
+        Acceptance.UNREADABLE: CaseRule.UNREADABLE,
+    }
     nothing = all(x.kind == NO_EVIDENCE for x in findings)
     for x in findings:
         state: State = "passed" if x.outcome is Acceptance.ACCEPTED else "failed"

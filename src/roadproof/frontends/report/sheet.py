@@ -3,20 +3,20 @@
 CSV files, data frames, tables on terminals and tables of pages are made of it.
 """
 
-import io
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import zip_longest
 from typing import Generic, Literal, NamedTuple, TypeAlias, TypeVar
 
-from roadproof.library.scenarios import Scenario
+from roadproof.frontends.report.csv_table import csv_text
+from roadproof.library.scenario_names import Scenario
 from roadproof.runtime.records import dataclass
 
 T = TypeVar("T")
 Value: TypeAlias = str | int | float | bool | None
 
 
-class Mark(NamedTuple):
+class ColouredText(NamedTuple):
     """A word or sign, and the class of its colour on pages."""
 
     text: str
@@ -42,7 +42,7 @@ class Trail:
         return " > ".join(self.names)
 
 
-Cell: TypeAlias = Value | Fraction | Scenario | Mark | Bar | Trail
+Cell: TypeAlias = Value | Fraction | Scenario | ColouredText | Bar | Trail
 """CSV rounds a fraction and writes of a scenario its number; a frame has floats, and names such as 4@base."""
 Renderer: TypeAlias = Literal["csv", "frame", "terminal", "outline", "page"]
 
@@ -67,7 +67,7 @@ class Column(Generic[T]):
 
     @property
     def title(self) -> str:
-        """What stands above the column on terminals and pages."""
+        """The title of the column on terminals and pages."""
         return self.name if self.heading is None else self.heading
 
 
@@ -82,35 +82,6 @@ class Sheet(Generic[T]):
         """The columns that a renderer has."""
         shared = () if renderer == "outline" else ("",)
         return [x for x in self.columns if x.only in (*shared, renderer)]
-
-
-class Heading(NamedTuple):
-    """A row or a column of a matrix, with what is said of it; ``key`` tells it apart."""
-
-    key: object
-    name: object
-    told: str | None = None
-
-
-class Linked(NamedTuple):
-    """A verdict in words, and the part of the page with its evidence, if it has any."""
-
-    verdict: str
-    told: str
-    target: str | None
-
-
-@dataclass(frozen=True)
-class Matrix:
-    """A sheet of linked cells, each in a row and a column; places without a cell stay empty.
-
-    ``groups``: names above columns, each with the number of columns below it.
-    """
-
-    rows: Sequence[Heading]
-    columns: Sequence[Heading]
-    cells: Mapping[tuple[object, object], Linked]
-    groups: Sequence[tuple[str, int]] = ()
 
 
 def as_csv(sheet: Sheet[T]) -> str:
@@ -140,10 +111,10 @@ def as_outline(sheet: Sheet[T]) -> list[str]:
     lines: list[str] = []
     for entry in sheet.entries:
         for place, column in enumerate(headings):
-            told = str(_value(column.cell(entry)))
-            if told and told != last.get(column.name):
-                lines.append(told)
-                last = {x.name: last.get(x.name, "") for x in headings[:place]} | {column.name: told}
+            heading = str(_value(column.cell(entry)))
+            if heading and heading != last.get(column.name):
+                lines.append(heading)
+                last = {x.name: last.get(x.name, "") for x in headings[:place]} | {column.name: heading}
         cells = (str(_value(x.cell(entry))).ljust(x.width) for x in columns if x.look != "heading")
         lines.append(f"  {' '.join(cells)}".rstrip())
     return lines
@@ -154,17 +125,6 @@ def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool] = ()) -> list[s
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     sides = [f"{'>' if one else '<'}{width}" for one, width in zip_longest(right, widths)]
     return ["  ".join(map(format, row, sides)).rstrip() for row in rows]
-
-
-def csv_text(header: Iterable[object], rows: Iterable[Iterable[object]]) -> str:
-    """Header and rows as CSV."""
-    import csv
-
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(rows)
-    return out.getvalue()
 
 
 def excerpt(text: str, most: int) -> str:
@@ -181,6 +141,6 @@ def _written(cell: Cell) -> Value:
 def _value(cell: Cell) -> Value:
     if isinstance(cell, Fraction):
         return float(cell)
-    if isinstance(cell, Mark | Bar | Trail):
+    if isinstance(cell, ColouredText | Bar | Trail):
         return cell.text
     return str(cell) if isinstance(cell, str | Scenario) else cell  # a verdict becomes plain text

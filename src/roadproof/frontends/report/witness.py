@@ -1,21 +1,25 @@
 """Drives that were found: a line about each search, a sheet of all, and the files of the drives."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.frontends.report.animations import animations
-from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Library
 from roadproof.library.words import words_of
-from roadproof.logic.custom_names import told_freedom
-from roadproof.logic.first_instant import told_first_instants
+from roadproof.logic.custom_names import freedom_lines
+from roadproof.logic.first_instant import first_instant_warnings
 from roadproof.questions.witness import SearchResult
 from roadproof.runtime.records import dataclass
 
+if TYPE_CHECKING:
+    from roadproof.frontends.report.sheet import Sheet
+
 
 def as_line(outcome: SearchResult, verbose: bool = False) -> str:
-    """What was found, and why not; with ``verbose`` also sizes and seconds by stage."""
+    """Return the result in a line, with its reason; ``verbose`` adds sizes and seconds by stage."""
     name = f"scenario {outcome.scenario}" if outcome.scenario is not None else outcome.query.text
     shown = f"{name:<12} {outcome.set_name:<5} {outcome.verdict:<11} road {outcome.road:<7}"
     if outcome.drives:
@@ -29,13 +33,13 @@ def as_line(outcome: SearchResult, verbose: bool = False) -> str:
     if outcome.scenario is not None:
         name = words_of(outcome.task.specification, outcome.scenario).name
         shown += f"\n  {name}" if name else ""
-    asked = outcome.query.formula
-    shown += "".join(f"\n  {said}" for said in (*told_freedom(asked), *told_first_instants(asked)))
+    formula = outcome.query.formula
+    shown += "".join(f"\n  {text}" for text in (*freedom_lines(formula), *first_instant_warnings(formula)))
     if outcome.reason:
         shown += f"\n  {outcome.reason}"
     if outcome.certificate is not None:
         shown += "\n  proved for all time, on every road; parts that clash:"
-        shown += "".join(f"\n    {part}" for part in outcome.told)
+        shown += "".join(f"\n    {part}" for part in outcome.core_texts)
     if verbose:
         shown += f"\n  sizes {dict(outcome.cost.sizes)}"
         spent = {**outcome.cost.stages, "all": outcome.cost.seconds} if outcome.cost.seconds else {}
@@ -46,6 +50,8 @@ def as_line(outcome: SearchResult, verbose: bool = False) -> str:
 
 def sheet_of(searches: Sequence[SearchResult]) -> Sheet[SearchResult]:
     """An entry for each search."""
+    from roadproof.frontends.report.sheet import Column, Sheet  # here: a line needs no table
+
     return Sheet(
         (
             Column("scenario", lambda x: x.scenario),
@@ -68,7 +74,7 @@ def _name(result: SearchResult) -> str:
 
 def _core_of(result: SearchResult) -> str:
     """The parts that clash where there is no drive at all; empty otherwise."""
-    return f"core: {'; '.join(result.told)}" if result.told else ""
+    return f"core: {'; '.join(result.core_texts)}" if result.core_texts else ""
 
 
 @dataclass(frozen=True)
@@ -80,12 +86,14 @@ class Views:
 
     @property
     def endings(self) -> tuple[str, ...]:
-        """How the names of the files end."""
+        """The endings of the file names."""
+        from roadproof.frontends.report.animations import animations
+
         drawn = (".png", ".svg") if self.pictures else ()
         return (".csv", *drawn, *(animations()[x].ending for x in self.animations))
 
     def of(self, judged: JudgedDrive, library: Library) -> Iterator[tuple[str, bytes]]:
-        """The same, with their contents; the samples come first."""
+        """Yield the files with their contents, the samples first."""
         from roadproof.frontends.report.samples import csv_of
 
         yield ".csv", csv_of(judged.file).encode()
@@ -95,6 +103,8 @@ class Views:
 
             for kind, content in as_bytes(draw_drive(judged.file, library)).items():
                 yield f".{kind}", content
+        from roadproof.frontends.report.animations import animations
+
         for name in self.animations:
             animation = animations()[name]
             yield animation.ending, animation.draw(judged.file, library)
@@ -102,4 +112,6 @@ class Views:
 
 def every_view() -> Views:
     """All files that there can be beside a drive file."""
+    from roadproof.frontends.report.animations import animations
+
     return Views(True, tuple(animations()))

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from roadproof.frontends.settings.groups import (
-    Answered,
-    Readings,
-)
+from roadproof.frontends.settings.groups import Answered, Readings
 from roadproof.frontends.settings.option import option, output
 from roadproof.runtime.records import dataclass
 

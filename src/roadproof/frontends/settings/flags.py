@@ -2,8 +2,7 @@
 
 import argparse
 import functools
-import shlex
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from typing import Any, TypeVar
 
 from roadproof.errors import UsageError
@@ -33,11 +32,11 @@ def add_flags(parser: argparse.ArgumentParser, settings: type[Settings]) -> None
 
 def section(parser: argparse.ArgumentParser, group: Group) -> argparse._ArgumentGroup:
     """The group of flags in the help of a command. Groups come in the order of ``TITLES``."""
-    found = {x.title: x for x in parser._action_groups}
+    groups = {x.title: x for x in parser._action_groups}
     for title in TITLES.values():
-        if title not in found:
-            found[title] = parser.add_argument_group(title)
-    return found[TITLES[group]]
+        if title not in groups:
+            groups[title] = parser.add_argument_group(title)
+    return groups[TITLES[group]]
 
 
 def mark_rare(flag: argparse.Action) -> None:
@@ -46,7 +45,7 @@ def mark_rare(flag: argparse.Action) -> None:
 
 
 def is_rare(flag: argparse.Action) -> bool:
-    """Whether only ``--help-all`` shows a flag."""
+    """Return whether only ``--help-all`` shows a flag."""
     return _RARE in vars(flag)
 
 
@@ -67,10 +66,11 @@ def _rules(settings: type[Settings], name: str, option: Option) -> dict[str, Any
 
 
 def _naming(option: Option, made: Callable[[A], object]) -> Callable[[A], object]:
-    """As ``made``, whose ``UsageError`` then begins with the flag."""
+    """Return ``made`` with a ``UsageError`` that begins with the flag."""
 
     @functools.wraps(made)
     def read(given: A) -> object:
+        """Read a value; errors begin with the flag."""
         try:
             return made(given)
         except UsageError as error:
@@ -91,37 +91,3 @@ def read_flag(args: argparse.Namespace, settings: type[Settings], name: str) -> 
     if option.gather is None:
         return value
     return getattr(settings, name) if value is None else _naming(option, option.gather)(value)
-
-
-def flags_of(settings: Settings) -> list[str]:
-    """The words of a command line that give the same settings: every flag whose value is no default."""
-    words: list[str] = []
-    for name, option in settings.options().items():
-        value = getattr(settings, name)
-        if option.flag is None or value == getattr(type(settings), name):
-            continue
-        if isinstance(value, bool):
-            words.append(option.flag)
-        elif option.gather is not None:
-            words += [word for text in _items(value) for word in (option.flag, text)]
-        else:
-            words += [option.flag, ",".join(_items(value)) or "none"]
-    return words
-
-
-def command_line(name: str, arguments: Iterable[str], *asked: Settings) -> str:
-    """The command line of a question: its arguments, then the flags of settings, one after the other."""
-    return shlex.join(["roadproof", name, *arguments, *(word for x in asked for word in flags_of(x))])
-
-
-def _items(value: object) -> list[str]:
-    """The texts behind a flag: several where it may be repeated, or has commas."""
-    match value:
-        case float():
-            return [f"{value:g}"]
-        case Mapping():
-            return [f"{name}={x}" if name else str(x) for name, x in value.items()]
-        case list() | tuple():
-            return [str(x) for x in value]
-        case _:
-            return [str(value)]

@@ -84,21 +84,10 @@ def same_or_any(flag: str, what: str) -> Any:
     return option("same", flag, f"{what} (default: same)", choices=("same", "any"))
 
 
-def fixed_or_any(flag: str, what: str) -> Any:
-    """A choice between ``what`` a test fixes, and any."""
-    text = f"look at all {what}, not only at those that a test fixes"
-    return option("fixed", flag, text, choices=("fixed", "any"))
-
-
-def with_complete(flag: str, what: str, **more: Any) -> Any:
-    """An option of the drives that ``--complete`` writes."""
-    return output(None, flag, f"with --complete: {what}", keyword=False, **more)
-
-
 def one_set(*default: str) -> Any:
     """``--set`` of a question about one spec set."""
-    told = f" (default: {default[0]})" if default else ""
-    return definition(default, "--set S", f"spec set{told}", read=lambda text: (text,))
+    default_text = f" (default: {default[0]})" if default else ""
+    return definition(default, "--set S", f"spec set{default_text}", read=lambda text: (text,))
 
 
 def several_sets(*default: str) -> Any:
@@ -153,12 +142,12 @@ class Values(Readings):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Definitions(Values, Answered):
+class DefinitionsSettings(Values, Answered):
     """The definitions that a question is asked in."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class SeveralSets(Definitions):
+class SeveralSets(DefinitionsSettings):
     """Definitions in several spec sets."""
 
     sets: tuple[str, ...] = several_sets("base")
@@ -179,7 +168,7 @@ class Models(Settings):
 
 @dataclass(frozen=True, kw_only=True)
 class SearchPlace(Models):
-    """Where, with whom and for how long drives are looked for."""
+    """The road, the vehicles and the horizon of a search for drives."""
 
     road: RoadLike | None = search(None, "--road R", "road, .toml file or map (default: by formula)")
     lanes: Mapping[str, str] | None = search(
@@ -222,7 +211,7 @@ class Traces(Settings):
 
 @dataclass(frozen=True, kw_only=True)
 class Method(Settings):
-    """By whom drives are looked for."""
+    """The engine and the solver of a search for drives."""
 
     engine: Engine = search(
         "milp", "--engine", "method of the search (default: milp)", choices=("milp", "smt"), rare=True
@@ -233,8 +222,8 @@ class Method(Settings):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Budget(Settings):
-    """How much work, and when the clock ends it."""
+class BudgetSettings(Settings):
+    """The work that a claim may take, and the clock that ends it."""
 
     effort: float = effort_for("a question", 60.0)
     timeout: float | None = option(
@@ -250,7 +239,7 @@ class Budget(Settings):
 
 @dataclass(frozen=True, kw_only=True)
 class Workers(Settings):
-    """How many processes do the work."""
+    """The number of processes, and whether they report progress."""
 
     jobs: Jobs = option(
         None, "--jobs N", "number of processes (default: one per core)", group="work", read=whole(1)
@@ -260,7 +249,7 @@ class Workers(Settings):
 
 @dataclass(frozen=True, kw_only=True)
 class Listeners(Settings):
-    """Who is told how far the work is, and of kept answers that do not count."""
+    """Listeners for progress, and for stored answers that do not count."""
 
     progress: Progress | None = option(None)
     say: Say | None = option(None)
@@ -268,7 +257,7 @@ class Listeners(Settings):
 
 @dataclass(frozen=True, kw_only=True)
 class Run(Workers, Listeners):
-    """How a long question is worked on, and where its evidence is kept."""
+    """The processes of a long question, and the folder of its evidence."""
 
     out: str | Path | None = folder_for("certificates and drives")
     fresh: bool = option(
@@ -282,7 +271,7 @@ class Run(Workers, Listeners):
 
 @dataclass(frozen=True, kw_only=True)
 class Sharing(Workers):
-    """Several runs, or a cluster, that do the work; from Python ``jobs`` says this."""
+    """The share of one of several runs, or a cluster; from Python ``jobs`` says this."""
 
     shard: str | None = work(
         None,
@@ -306,10 +295,10 @@ class Sharing(Workers):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Survey(Definitions, Models, Budget, Sharing, Run):
+class Survey(DefinitionsSettings, Models, BudgetSettings, Sharing, Run):
     """Options of every question about several scenarios."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class DriveSearch(SeveralSets, SearchPlace, Method, Budget, Sharing, Run):
+class DriveSearch(SeveralSets, SearchPlace, Method, BudgetSettings, Sharing, Run):
     """Options of every question about drives of some scenarios or formulas."""

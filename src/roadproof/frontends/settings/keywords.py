@@ -1,4 +1,4 @@
-"""Keyword arguments of each question; made by ``roadproof.frontends.settings.keywords_file``."""
+"""Keyword arguments of each question; ``make generated`` writes this file."""
 
 from __future__ import annotations
 
@@ -95,7 +95,12 @@ class PreventionKeywords(TypedDict, total=False):
     unpreventable: str | None
 
 
-class WitnessKeywords(DriveSearchKeywords, PreventionKeywords, total=False):
+class EncodingOptionsKeywords(TypedDict, total=False):
+    solution: Path | None
+    explain: bool
+
+
+class WitnessKeywords(DriveSearchKeywords, PreventionKeywords, EncodingOptionsKeywords, total=False):
     objective: Objective
     count: int
     pictures: bool

@@ -11,11 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias, TypeVar
 
 from roadproof.errors import UsageError
-from roadproof.extension import added, imported
+from roadproof.extension import extension_error, import_entry, named_entries, owner_of
 from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
+    from roadproof.evidence.answer import ClaimAnswer
     from roadproof.frontends.api.definitions import Among, Definitions, What
+    from roadproof.questions.question import Answers, Question
 
 F = TypeVar("F", bound=Callable[..., object])
 S = TypeVar("S", bound="Settings")
@@ -90,6 +92,17 @@ class Settings:
         """
         return home
 
+    def given_answers(self, question: "Question[Any]") -> "Mapping[str, ClaimAnswer]":
+        """Return answers by the name of their claim that are given, so that nothing is computed.
+
+        Options of extensions may read them; there are none without.
+        """
+        return {}
+
+    def remarks(self, question: "Question[Any]", answers: "Answers") -> tuple[str, ...]:
+        """Return lines about answers that options of extensions ask for."""
+        return ()
+
     @classmethod
     def with_files(cls, args: argparse.Namespace, files: list[Path]) -> list[Path]:
         """Return specification files with those that flags of extensions need."""
@@ -103,7 +116,8 @@ class Settings:
             if name not in known or not known[name].keyword:
                 near = get_close_matches(name, [x for x in known if known[x].keyword], n=1)
                 hint = f"; did you mean {near[0]!r}?" if near else ""
-                raise TypeError(f"{cls.__name__.lower()}() got an unexpected keyword argument {name!r}{hint}")
+                function = stem_of(cls).lower()
+                raise TypeError(f"{function}() got an unexpected keyword argument {name!r}{hint}")
             if value is not getattr(cls, name):
                 known[name].check(name, value)
                 if name in several and (isinstance(value, str) or not isinstance(value, Iterable)):
@@ -112,11 +126,23 @@ class Settings:
         return cls(**given)
 
 
+def stem_of(settings: type[Settings]) -> str:
+    """Return the name of a class without the ending ``Settings``: its function or group of options."""
+    return settings.__name__.removesuffix("Settings")
+
+
 def extensible(command: str) -> Callable[[type[S]], type[S]]:
     """Adds the options to the settings of a command that extensions have for it."""
 
     def extended(settings: type[S]) -> type[S]:
-        more = [imported(x) for x in added("options", command)]
+        """Return the class with the options of extensions."""
+        more: list[type[Settings]] = []
+        for entry in named_entries("options", command):
+            added: type[Settings] = import_entry(entry)
+            bases: tuple[type[Settings], ...] = (settings, *more)
+            for former in bases:
+                _check_new(added, former, entry, command)
+            more.append(added)
         if not more:
             return settings
         about: dict[str, Any] = {
@@ -132,16 +158,28 @@ def extensible(command: str) -> Callable[[type[S]], type[S]]:
     return extended
 
 
+def _check_new(added: type[Settings], former: type[Settings], entry: str, command: str) -> None:
+    """Raise ``InputError`` where options that an extension adds to a command have a name that it has."""
+    known = former.options()
+    flags = {x.flag for x in known.values()} - {None}
+    for name, option in added.options().items():
+        if known.get(name) is not option and (name in known or option.flag in flags):
+            raise extension_error(
+                owner_of(entry), f"options={command!r}: {option.flag or name} of {entry} is there already"
+            )
+
+
 def _lists(settings: type[Settings]) -> set[str]:
     """The options that take several values, and none by itself."""
-    found = dataclasses.fields(settings)
-    return {x.name for x in found if str(x.type).startswith(("Iterable", "Sequence"))}
+    fields = dataclasses.fields(settings)
+    return {x.name for x in fields if str(x.type).startswith(("Iterable", "Sequence"))}
 
 
 def takes(settings: type[Settings]) -> Callable[[F], F]:
     """Marks a function whose ``**options`` are those of ``settings``."""
 
     def show(function: F) -> F:
+        """Set the signature of the function to all its options."""
         kinds, options = inspect.Parameter, settings.options()
         signature = inspect.signature(function)
         own = [x for x in signature.parameters.values() if x.kind is not kinds.VAR_KEYWORD]

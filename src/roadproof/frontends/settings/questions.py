@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 
 @extensible("compare")
 @dataclass(frozen=True, kw_only=True)
-class Compare(groups.SeveralSets, groups.SearchPlace, groups.Method, groups.Budget, groups.Run):
+class CompareSettings(
+    groups.SeveralSets, groups.SearchPlace, groups.Method, groups.BudgetSettings, groups.Run
+):
     """Options of ``compare``."""
 
     out: str | Path | None = groups.folder_for("certificates and drive files")
@@ -53,7 +55,7 @@ class Witness(groups.DriveSearch):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Motion(Settings):
+class MotionSettings(Settings):
     """Options of ``motion``, which exists in Python only."""
 
     length: Number = option(Fraction(9, 2))
@@ -63,7 +65,7 @@ class Motion(Settings):
 
 @extensible("prove")
 @dataclass(frozen=True, kw_only=True)
-class Prove(groups.Definitions, groups.Models, groups.Budget, groups.Run):
+class Prove(groups.DefinitionsSettings, groups.Models, groups.BudgetSettings, groups.Run):
     """Options of ``prove``."""
 
     sets: tuple[str, ...] = groups.one_set()
@@ -124,7 +126,7 @@ class Prove(groups.Definitions, groups.Models, groups.Budget, groups.Run):
 
 @extensible("check")
 @dataclass(frozen=True, kw_only=True)
-class Check(groups.Answered, groups.Budget, groups.Workers):
+class Check(groups.Answered, groups.BudgetSettings, groups.Workers):
     """Options of ``check``."""
 
     solver: Solver = groups.checker_of("solver that checks certificates")

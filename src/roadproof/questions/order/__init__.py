@@ -1,1 +1,1 @@
-"""Which scenarios imply which: every implication proved, every other one refuted by a drive."""
+"""The implications between scenarios: every one proved, every other one refuted by a drive."""

@@ -1,11 +1,11 @@
 """The order of scenarios as plain data."""
 
-from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers import shared
+from roadproof.evidence.answers import headings, shared
 from roadproof.evidence.codec import Doc, Key, Rule
 from roadproof.questions.basis import Basis
-from roadproof.questions.question import Place, heading_of
+from roadproof.questions.question import EvidencePlace, heading_of
 from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ Position: TypeAlias = Annotated[int, Rule(minimum=1)]
 
 @dataclass(frozen=True, kw_only=True)
 class Implication:
-    """That one scenario implies another."""
+    """The fact that one scenario implies another."""
 
     above: Annotated[shared.ScenarioName, Key("from")]
     below: Annotated[shared.ScenarioName, Key("to")]
@@ -34,7 +34,7 @@ class EdgeData(Implication):
     """A proof that one scenario implies another."""
 
     claim: shared.Formula
-    certificate: shared.KeptCertificate
+    certificate: shared.CertificateField
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +46,7 @@ class RefutationData:
     fails: Annotated[
         tuple[shared.ScenarioName, ...], Rule(least=1), Doc("The scenarios that are false on the drive.")
     ]
-    drive: shared.KeptDrive
+    drive: shared.DriveField
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,15 +57,15 @@ class MissingImplication(Implication):
 
 
 @dataclass(frozen=True, kw_only=True)
-class DoubtData(Implication):
+class UndecidedImplicationData(Implication):
     """An implication that is neither proved nor refuted."""
 
     reason: shared.Reason
 
 
 @dataclass(frozen=True, kw_only=True)
-class OrderData(shared.Heading):
-    """Which scenarios imply which."""
+class OrderData(headings.AnswerHeading):
+    """The implications between scenarios."""
 
     schema: Literal["roadproof/order/2"] = SCHEMA
     sets: shared.SetNames
@@ -81,16 +81,16 @@ class OrderData(shared.Heading):
     edges: Annotated[tuple[EdgeData, ...], Doc("Those proved that do not follow from others.")]
     missing: tuple[MissingImplication, ...]
     drives: tuple[RefutationData, ...]
-    doubts: tuple[DoubtData, ...]
+    doubts: tuple[UndecidedImplicationData, ...]
     seconds: shared.Seconds = 0.0
 
 
-def order_data(basis: Basis, view: "OrderView", place: Place, seconds: float) -> OrderData:
+def order_data(basis: Basis, view: "OrderView", place: EvidencePlace, seconds: float) -> OrderData:
     """Return the view as ``--json`` prints it."""
-    said: dict[str, Any] = {"sets": basis.set_names, **basis.said()}
     return OrderData(
         **heading_of(SCHEMA, basis),
-        **said,
+        sets=basis.set_names,
+        **basis.common_data(),
         kinds=tuple(tuple(map(str, kind.nodes)) for kind in view.kinds),
         proved=tuple(_edge(x, place) for x in view.proved),
         edges=tuple(_edge(x, place) for x in view.edges),
@@ -107,12 +107,15 @@ def order_data(basis: Basis, view: "OrderView", place: Place, seconds: float) ->
             )
             for k, x in enumerate(view.drives, 1)
         ),
-        doubts=tuple(DoubtData(above=str(x.above), below=str(x.below), reason=x.reason) for x in view.doubts),
+        doubts=tuple(
+            UndecidedImplicationData(above=str(x.above), below=str(x.below), reason=x.reason)
+            for x in view.doubts
+        ),
         seconds=round(seconds, 1),
     )
 
 
-def _edge(x: "Edge", place: Place) -> EdgeData:
+def _edge(x: "Edge", place: EvidencePlace) -> EdgeData:
     return EdgeData(
         above=str(x.above), below=str(x.below), claim=x.claim.text, certificate=place(x.name, x.answer)
     )

@@ -10,9 +10,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from roadproof.engines.search.known_drive import recast
-from roadproof.engines.search.question import usual_road
-from roadproof.evidence.answer import Answer, undecided
-from roadproof.evidence.claim import Claim, Exists, claim_of, valid_under
+from roadproof.engines.search.usual_road import usual_road
+from roadproof.evidence.answer import ClaimAnswer, undecided
+from roadproof.evidence.assuming import valid_under
+from roadproof.evidence.claim import Claim, Exists, claim_of
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind
@@ -23,8 +24,8 @@ from roadproof.logic.formula import And, Formula
 from roadproof.questions.basis import Basis
 from roadproof.questions.order.kinds import Cast, Kind, Reading, casts_of, name_of, own_cast
 from roadproof.questions.question import Answers, Steps
-from roadproof.reasons import NO_REASON, Reason, Why, joined
-from roadproof.semantics.exact.exact import LazyJudge
+from roadproof.reasons import NO_REASON, Reason, ReasonKind, joined
+from roadproof.semantics.exact.judging import LazyJudge
 from roadproof.verdict import Verdict
 
 
@@ -35,7 +36,7 @@ class Edge:
     above: Scenario
     below: Scenario
     name: str
-    answer: Answer
+    answer: ClaimAnswer
 
     @property
     def claim(self) -> Query:
@@ -55,7 +56,7 @@ class RefutingDrive:
     node: Scenario
     others: tuple[Scenario, ...]
     name: str
-    answer: Answer
+    answer: ClaimAnswer
 
     @property
     def drive(self) -> JudgedDrive:
@@ -65,24 +66,24 @@ class RefutingDrive:
 
 
 @dataclass(frozen=True)
-class OrderDoubt:
+class UndecidedImplication:
     """An implication of which no reading was proved, and those in ``open`` were not refuted either.
 
-    ``late``: why a search was cut off, where one was; ``asked``: the claims for drives that were asked, by
+    ``late``: why a search was cut off, where one was; ``claims``: the claims for drives that were asked, by
     name.
     """
 
     above: Scenario
     below: Scenario
     open: tuple[tuple[Query, Query], ...]
-    asked: Mapping[str, Claim]
+    claims: Mapping[str, Claim]
     late: Reason = NO_REASON
 
     @property
     def reason(self) -> Reason:
-        """Why it is in doubt."""
-        told = ", ".join(f"{a.text} -> {b.text}" for a, b in self.open) or f"{self.above} -> {self.below}"
-        return joined((Why.OPEN_READINGS(told), self.late))
+        """Return why it is in doubt."""
+        readings = ", ".join(f"{a.text} -> {b.text}" for a, b in self.open) or f"{self.above} -> {self.below}"
+        return joined((ReasonKind.OPEN_READINGS(readings), self.late))
 
 
 def drive_claim(basis: Basis, own: Query, query: Query) -> Claim:
@@ -97,7 +98,7 @@ def drive_claim(basis: Basis, own: Query, query: Query) -> Claim:
 
 
 class JudgedDrives:
-    """What is false on drives, each judged once; nothing of it is sent to other processes."""
+    """A cache of the claims that are false on drives, each judged once; it stays in this process."""
 
     def __init__(self) -> None:
         self.known: dict[object, tuple[JudgedDrive, tuple[bool, ...]]] = {}
@@ -135,7 +136,7 @@ def _all_bound(
 
 @dataclass
 class Deciding:
-    """What is known of the implications from ``family`` to all ``kinds``; ``run`` asks for more.
+    """The implications from ``family`` to all ``kinds`` that are decided so far; ``run`` decides more.
 
     ``open``: by kind and kind, the readings of the second that no drive has refuted yet. ``answered``:
     whether all claims have an answer.
@@ -147,7 +148,7 @@ class Deciding:
     judged: JudgedDrives
     edges: list[Edge] = field(default_factory=list)
     drives: list[RefutingDrive] = field(default_factory=list)
-    doubts: list[OrderDoubt] = field(default_factory=list)
+    doubts: list[UndecidedImplication] = field(default_factory=list)
     open: dict[tuple[Scenario, Scenario], list[Reading]] = field(default_factory=dict)
     answered: bool = True
 
@@ -195,7 +196,7 @@ class Deciding:
 
     # --- drives ----------------------------------------------------------------------------------
 
-    def _refute_by_one(self, kind: Kind, first: Answer) -> Steps:
+    def _refute_by_one(self, kind: Kind, first: ClaimAnswer) -> Steps:
         """Refute with a drive of a kind, on which none of those holds that differ in the sector only."""
         rest = [negation(self._own(x)) for x in self.family if x != kind]
         alone = first
@@ -205,17 +206,17 @@ class Deciding:
         if alone.drive is not None:
             yield from self._refute(kind, alone.drive)
 
-    def _refute(self, kind: Kind, drive: JudgedDrive, shown: tuple[str, Answer] | None = None) -> Steps:
+    def _refute(self, kind: Kind, drive: JudgedDrive, shown: tuple[str, ClaimAnswer] | None = None) -> Steps:
         """Refute with a drive of a kind all that it refutes of what is still open.
 
         ``shown``: the answer that the drive is of, and its name; what it shows is not asked again.
         """
         own = own_cast(self.home, kind)
         for mine, others in casts_of(self.home, self.kinds, kind):
-            held = self.judged.truths(self.basis, drive, own, mine, others)
+            truths = self.judged.truths(self.basis, drive, own, mine, others)
             false = [
                 x
-                for x, holds in zip(others, held, strict=True)
+                for x, holds in zip(others, truths, strict=True)
                 if not holds and Reading(mine, x) in self.open[kind.node, x.scenario]
             ]
             if false:
@@ -229,7 +230,7 @@ class Deciding:
                     answer = yield name, claim
                 self._add(kind.node, [Reading(mine, x) for x in false], name, answer)
 
-    def _add(self, node: Scenario, readings: Sequence[Reading], name: str, answer: Answer) -> None:
+    def _add(self, node: Scenario, readings: Sequence[Reading], name: str, answer: ClaimAnswer) -> None:
         """Note which readings a drive refutes."""
         if answer.drive is not None:
             others = tuple(x.below.scenario for x in readings)
@@ -249,20 +250,22 @@ class Deciding:
                 self.edges.append(Edge(kind.node, target.node, name, answer))
                 return
             yield from self._use(kind, reading, name, answer)
-        asked: dict[str, Claim] = {}
+        claims: dict[str, Claim] = {}
         late: list[Reason] = []
         for name, reading in self._still_open(kind, target):
             if reading in self.open[kind.node, target.node]:
                 above, below = self._queries(reading)
                 claim = self._drive(kind, both(above, negation(below)))
                 answer = yield f"against-{name}", claim
-                asked[f"against-{name}"] = claim
+                claims[f"against-{name}"] = claim
                 late += [answer.reason] if answer.reason.is_late else []
                 yield from self._use(kind, reading, f"against-{name}", answer)
                 if answer.drive is None:
                     break
         if left := tuple(self._queries(x) for _, x in self._still_open(kind, target)):
-            self.doubts.append(OrderDoubt(kind.node, target.node, left, asked, joined(dict.fromkeys(late))))
+            self.doubts.append(
+                UndecidedImplication(kind.node, target.node, left, claims, joined(dict.fromkeys(late)))
+            )
 
     def _still_open(self, kind: Kind, target: Kind) -> list[tuple[str, Reading]]:
         """Return the readings that are left, each with its name: by their vehicles, in a fixed order."""
@@ -281,7 +284,7 @@ class Deciding:
     def _queries(self, reading: Reading) -> tuple[Query, Query]:
         return reading.above.query(self.home), reading.below.query(self.home)
 
-    def _use(self, kind: Kind, reading: Reading, name: str, answer: Answer) -> Steps:
+    def _use(self, kind: Kind, reading: Reading, name: str, answer: ClaimAnswer) -> Steps:
         """Refute what a drive against one reading refutes: others with it, where its vehicles can play."""
         drive = answer.drive
         if drive is None:

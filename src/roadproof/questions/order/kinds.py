@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from itertools import permutations
 
-from roadproof.library.scenarios import Scenario, applied, numbers_of, vehicles_of, without_sectors
+from roadproof.library.scenarios import Scenario, apply_scenario, numbers_of, vehicles_of, without_sectors
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
@@ -12,10 +12,13 @@ from roadproof.runtime.records import dataclass
 
 @dataclass(frozen=True)
 class Kind:
-    """Scenarios with one formula, the first of which stands for all; ``like``: equal but for the sector."""
+    """Scenarios with one formula, the first of which stands for all.
+
+    ``family``: a number that kinds share which differ in their road sectors only.
+    """
 
     nodes: tuple[Scenario, ...]
-    like: int
+    family: int
 
     @property
     def node(self) -> Scenario:
@@ -27,25 +30,25 @@ def kinds_of(
     specification: Specification, sets: Sequence[str], numbers: Sequence[int] | None = None
 ) -> tuple[Kind, ...]:
     """Return the scenarios of all ``sets`` in groups with one formula; ``numbers``: only these."""
-    found: dict[Formula, list[Scenario]] = {}
-    likes: dict[Formula, int] = {}
-    like_of: dict[Scenario, int] = {}
+    groups: dict[Formula, list[Scenario]] = {}
+    families: dict[Formula, int] = {}
+    family_of: dict[Scenario, int] = {}
     for set_name in sets:
         for number in numbers_of(specification.in_set(set_name)):
             if numbers is not None and number not in numbers:
                 continue
             node = Scenario(number, set_name)
-            formula = applied(specification, node).formula
-            found.setdefault(without_names(formula), []).append(node)
-            like_of[node] = likes.setdefault(without_sectors(formula), len(likes))
-    return tuple(Kind(tuple(nodes), like_of[nodes[0]]) for nodes in found.values())
+            formula = apply_scenario(specification, node).formula
+            groups.setdefault(without_names(formula), []).append(node)
+            family_of[node] = families.setdefault(without_sectors(formula), len(families))
+    return tuple(Kind(tuple(nodes), family_of[nodes[0]]) for nodes in groups.values())
 
 
 def families_of(kinds: Sequence[Kind]) -> list[tuple[Kind, ...]]:
     """Return the kinds in groups that differ in their road sectors only."""
     families: dict[int, list[Kind]] = {}
     for kind in kinds:
-        families.setdefault(kind.like, []).append(kind)
+        families.setdefault(kind.family, []).append(kind)
     return [tuple(family) for family in families.values()]
 
 
@@ -63,7 +66,7 @@ class Cast:
 
     def query(self, home: Specification) -> Query:
         """Return the scenario applied to its vehicles."""
-        return applied(home, self.scenario, self.vehicles)
+        return apply_scenario(home, self.scenario, self.vehicles)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Which scenarios imply which: every implication proved, every other one refuted by a drive.
+"""The question which scenarios imply which: every implication proved, every other one refuted by a drive.
 
 Scenarios with one formula share all evidence. Families that differ in their road sectors only are decided by
 themselves; then the drives of all families are tried on what is in doubt.
@@ -21,12 +21,12 @@ from roadproof.questions.order.deciding import (
     Deciding,
     Edge,
     JudgedDrives,
-    OrderDoubt,
     RefutingDrive,
+    UndecidedImplication,
     drive_claim,
 )
 from roadproof.questions.order.kinds import Kind, families_of, kinds_of, name_of
-from roadproof.questions.question import Answers, Place, Steps
+from roadproof.questions.question import Answers, EvidencePlace, Steps
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 
@@ -44,12 +44,12 @@ class OrderView:
     edges: tuple[Edge, ...]
     missing: tuple[tuple[Scenario, Scenario, tuple[int, ...]], ...]
     drives: tuple[RefutingDrive, ...]
-    doubts: tuple[OrderDoubt, ...]
+    doubts: tuple[UndecidedImplication, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Compared:
-    """Which scenarios are compared."""
+    """The scenarios to compare."""
 
     among: Annotated[tuple[shared.Number, ...] | None, Doc("The scenarios; null for all.")] = None
 
@@ -60,7 +60,7 @@ class OrderQuestion:
 
     kind: ClassVar[str] = "order"
     basis: Basis
-    asked: Compared = field(default_factory=Compared)
+    settings: Compared = field(default_factory=Compared)
 
     @property
     def work(self) -> Work:
@@ -68,14 +68,14 @@ class OrderQuestion:
         return Work(self.basis.effort, self.basis.proof, recast=True, once=True, disprove=False)
 
     @classmethod
-    def of(cls, basis: Basis, asked: object, where: str) -> "OrderQuestion":
+    def of(cls, basis: Basis, settings: object, where: str) -> "OrderQuestion":
         """Return the question that plain data ask. Raises ``InputError``."""
-        return cls(basis, read(Compared, asked, where))
+        return cls(basis, read(Compared, settings, where))
 
     @cached_property
     def kinds(self) -> tuple[Kind, ...]:
         """The scenarios in groups with one formula."""
-        return kinds_of(self.basis.specification, self.basis.set_names, self.asked.among)
+        return kinds_of(self.basis.specification, self.basis.set_names, self.settings.among)
 
     @cached_property
     def families(self) -> list[tuple[Kind, ...]]:
@@ -84,12 +84,12 @@ class OrderQuestion:
 
     @cached_property
     def judged(self) -> JudgedDrives:
-        """What is false on drives that are known."""
+        """The claims that are false on known drives."""
         return JudgedDrives()
 
-    def batches(self, known: Answers) -> list["FamilyBatch | DoubtBatch"]:
-        """A batch for each family; when these are settled, one for the doubts about each."""
-        first: list[FamilyBatch | DoubtBatch] = [FamilyBatch(self, family) for family in self.families]
+    def batches(self, known: Answers) -> list["FamilyBatch | UndecidedBatch"]:
+        """A batch for each family; when these are settled, one for the undecided ones of each."""
+        first: list[FamilyBatch | UndecidedBatch] = [FamilyBatch(self, family) for family in self.families]
         decided = []
         for family in self.families:
             decided.append(self._decided(family, known, whole=False))
@@ -99,7 +99,7 @@ class OrderQuestion:
         return [
             *first,
             *(
-                DoubtBatch(self, name_of(x.family[0].node), drives, tuple(x.doubts))
+                UndecidedBatch(self, name_of(x.family[0].node), drives, tuple(x.doubts))
                 for x in decided
                 if x.doubts and drives
             ),
@@ -118,40 +118,41 @@ class OrderQuestion:
         match word:
             case "implies" | "against" | "again":
                 return " -> ".join(ends)
-            case _:
+            case _:  # open: names of claims
                 return f"scenario {ends[0]}"
 
     def view(self, known: Answers) -> OrderView:
         """Return the edges of the Hasse diagram, and for the other pairs what refutes them."""
-        decided = [self._settled(self._decided(family, known), known) for family in self.families]
+        decided = [self._retried(self._decided(family, known), known) for family in self.families]
         proved = [edge for x in decided for edge in x.edges]
         pairs = {edge.pair for edge in proved}
         reduced = transitive_reduction(pairs)
-        doubts = [x for each in decided for x in each.doubts]
-        doubts = [x for x in doubts if str(x.below) not in reachable(str(x.above), pairs)]
+        unknowns = [x for each in decided for x in each.doubts]
+        unknowns = [x for x in unknowns if str(x.below) not in reachable(str(x.above), pairs)]
         drives = tuple(drive for x in decided for drive in x.drives)
         return OrderView(
             self.kinds,
             tuple(proved),
             tuple(edge for edge in proved if edge.pair in reduced),
-            self._missing(pairs, drives, {(x.above, x.below) for x in doubts}),
+            self._missing(pairs, drives, {(x.above, x.below) for x in unknowns}),
             drives,
-            tuple(doubts),
+            tuple(unknowns),
         )
 
-    def _settled(self, deciding: Deciding, known: Answers) -> Deciding:
+    def _retried(self, deciding: Deciding, known: Answers) -> Deciding:
         """Return what is known of a family when the drives of all were tried on what is in doubt."""
-        doubts: list[OrderDoubt] = []
-        for doubt in deciding.doubts:
-            every = {name: known.get(name) for name in again(self.basis, doubt)}
+        left: list[UndecidedImplication] = []
+        for implication in deciding.doubts:
+            every = {name: known.get(name) for name in again(self.basis, implication)}
             shown = {name: x for name, x in every.items() if x is not None and x.drive is not None}
             if len(shown) < len(every):
-                doubts.append(doubt)
+                left.append(implication)
             else:
                 deciding.drives += [
-                    RefutingDrive(doubt.above, (doubt.below,), name, x) for name, x in shown.items()
+                    RefutingDrive(implication.above, (implication.below,), name, x)
+                    for name, x in shown.items()
                 ]
-        deciding.doubts[:] = doubts
+        deciding.doubts[:] = left
         return deciding
 
     def _missing(
@@ -172,7 +173,7 @@ class OrderQuestion:
             if (str(above), str(below)) not in implied and (above, below) not in doubtful
         )
 
-    def data(self, view: OrderView, place: Place, seconds: float) -> OrderData:
+    def data(self, view: OrderView, place: EvidencePlace, seconds: float) -> OrderData:
         """Return the view as ``--json`` prints it."""
         return order_data(self.basis, view, place, seconds)
 
@@ -196,13 +197,13 @@ class FamilyBatch:
 
 
 @dataclass(frozen=True)
-class DoubtBatch:
+class UndecidedBatch:
     """Claims that are in doubt, after the claims of all ``drives``, which may refute them."""
 
     question: OrderQuestion
     family: str
     drives: Mapping[str, Claim]
-    doubts: tuple[OrderDoubt, ...]
+    doubts: tuple[UndecidedImplication, ...]
 
     @property
     def name(self) -> str:
@@ -212,18 +213,18 @@ class DoubtBatch:
     def steps(self) -> Steps:
         """Yield each claim, and be sent its answer."""
         claims = dict(self.drives)
-        for doubt in self.doubts:
-            claims |= {**doubt.asked, **again(self.question.basis, doubt)}
+        for implication in self.doubts:
+            claims |= {**implication.claims, **again(self.question.basis, implication)}
         for name, claim in claims.items():  # noqa: UP028 - what is sent is not for the iterator
             yield name, claim
 
 
-def again(basis: Basis, doubt: OrderDoubt) -> dict[str, Claim]:
+def again(basis: Basis, implication: UndecidedImplication) -> dict[str, Claim]:
     """Return the claims that ask for other drives against an implication in doubt, by name."""
-    stem = f"again-{name_of(doubt.above)}-{name_of(doubt.below)}"
+    stem = f"again-{name_of(implication.above)}-{name_of(implication.below)}"
     return {
         f"{stem}-{k}": drive_claim(basis, above, both(above, negation(below)))
-        for k, (above, below) in enumerate(doubt.open, 1)
+        for k, (above, below) in enumerate(implication.open, 1)
     }
 
 
@@ -232,12 +233,12 @@ def again(basis: Basis, doubt: OrderDoubt) -> dict[str, Claim]:
 
 def transitive_reduction(pairs: Set[tuple[str, str]]) -> set[tuple[str, str]]:
     """Return the pairs of a relation that do not follow from others by a chain."""
-    kept = set(pairs)
+    reduced = set(pairs)
     for above, below in sorted(pairs):
-        rest = kept - {(above, below)}
+        rest = reduced - {(above, below)}
         if below in reachable(above, rest):
-            kept = rest
-    return kept
+            reduced = rest
+    return reduced
 
 
 def reachable(name: str, pairs: Set[tuple[str, str]]) -> set[str]:

@@ -1,8 +1,8 @@
-"""Points in time: rational, or a real algebraic number that is not.
+"""Points in time: rational or irrational algebraic numbers, with exact comparison.
 
-An irrational point is a root of an irreducible integer polynomial, told from the other roots by a
-rational interval. Irreducible polynomials make equality plain: two points are equal when they have
-the same primitive polynomial and one root of it lies in both intervals.
+An irrational point is a root of an irreducible integer polynomial, isolated from its other roots by a
+rational interval. Irreducible polynomials make equality simple: two points are equal when they have the
+same primitive polynomial and one root of it lies in both intervals.
 """
 
 from dataclasses import dataclass
@@ -50,7 +50,7 @@ CLOSED_FORM = 2  # the roots of polynomials up to this degree are written down, 
 
 
 def compare(left: Point, right: Point) -> int:
-    """-1, 0 or 1 as ``left`` is less than, equal to or greater than ``right``; exact."""
+    """Return -1, 0 or 1 as ``left`` is less than, equal to or greater than ``right``; exact."""
     if isinstance(left, Root):
         return _compare_roots(left, right) if isinstance(right, Root) else _compare_rational(left, right)
     if isinstance(right, Root):
@@ -59,7 +59,7 @@ def compare(left: Point, right: Point) -> int:
 
 
 def moved(point: Point, by: Fraction) -> Point:
-    """``point + by``."""
+    """Return ``point + by``."""
     if not isinstance(point, Root):
         return point + by
     if by == 0:
@@ -68,7 +68,7 @@ def moved(point: Point, by: Fraction) -> Point:
 
 
 def bounds(point: Point, width: Fraction) -> tuple[Fraction, Fraction]:
-    """Rationals low <= point <= high with high - low <= ``width`` (> 0)."""
+    """Return rationals low <= point <= high with high - low <= ``width`` (> 0)."""
     if not isinstance(point, Root):
         return point, point
     while point.high - point.low > width:
@@ -76,8 +76,8 @@ def bounds(point: Point, width: Fraction) -> tuple[Fraction, Fraction]:
     return point.low, point.high
 
 
-def approximate(point: Point) -> float:
-    """A float near ``point``, for pictures; never for a decision."""
+def as_float(point: Point) -> float:
+    """Return a float near ``point``, for pictures; never for a decision."""
     low, high = bounds(point, Fraction(1, 2**60))
     return float((low + high) / 2)
 
@@ -99,7 +99,7 @@ def decimal(point: Point, places: int = 6) -> str:
 
 @lru_cache(maxsize=8192)
 def real_roots(numerators: tuple[int, ...]) -> tuple[tuple[Point, int], ...]:
-    """The distinct real roots of an integer polynomial (not zero), ascending, with multiplicities."""
+    """Return the distinct real roots of a nonzero integer polynomial, ascending, with multiplicities."""
     degree = len(numerators) - 1
     if degree <= 0:
         return ()
@@ -134,19 +134,19 @@ def _roots_by_factoring(numerators: tuple[int, ...]) -> tuple[tuple[Point, int],
     # sympy takes a third of a second to load, and degrees above 2 are rare.
     from sympy import Poly, Symbol
 
-    found: list[tuple[Point, int]] = []
+    roots: list[tuple[Point, int]] = []
     t = Symbol("t")
     _, factors = Poly(list(reversed(numerators)), t, domain="ZZ").factor_list()
     for factor, multiplicity in factors:
         integers = tuple(int(c) for c in reversed(factor.all_coeffs()))
         if len(integers) <= 3:
-            found += [(point, multiplicity) for point, _ in real_roots(integers)]
+            roots += [(point, multiplicity) for point, _ in real_roots(integers)]
             continue
         polynomial = primitive(integers)
         for (low, high), _ in factor.intervals():
             ends = Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q))
-            found.append((Root(polynomial, *ends), multiplicity))
-    return tuple(sorted(found, key=lambda entry: entry[0]))
+            roots.append((Root(polynomial, *ends), multiplicity))
+    return tuple(sorted(roots, key=lambda entry: entry[0]))
 
 
 def _compare_rational(root: Root, x: Fraction) -> int:

@@ -1,4 +1,4 @@
-"""Functions of time that are polynomials on pieces, and where they are positive, zero or negative.
+"""Piecewise polynomial functions of time, and where they are positive, zero or negative.
 
 A piece holds from its start (included) to the start of the next (excluded), the last for ever. So
 at a knot the value is that of the piece which begins there, and sums, products, maxima and minima
@@ -13,7 +13,7 @@ from typing import TypeAlias
 from roadproof.semantics.exact.algebraic import CLOSED_FORM, Point, Root, real_roots
 from roadproof.semantics.exact.polynomial import (
     HALVINGS,
-    Polynomial,
+    TimePolynomial,
     add,
     is_rootless,
     negate,
@@ -23,46 +23,48 @@ from roadproof.semantics.exact.polynomial import (
 from roadproof.semantics.exact.truth import START, Cut, TruthSet, from_values
 
 # Ascending (start, polynomial); the first start is 0.
-Pieces: TypeAlias = tuple[tuple[Point, Polynomial], ...]
+Pieces: TypeAlias = tuple[tuple[Point, TimePolynomial], ...]
 
 
-def constant(value: Polynomial) -> Pieces:
-    """One polynomial for all times."""
+def constant(value: TimePolynomial) -> Pieces:
+    """Return one polynomial for all times."""
     return ((START.point, value),)
 
 
-def apply(change: Callable[[Polynomial], Polynomial], pieces: Pieces) -> Pieces:
-    """``change`` on every piece."""
+def apply(change: Callable[[TimePolynomial], TimePolynomial], pieces: Pieces) -> Pieces:
+    """Return the function with ``change`` applied to every piece."""
     return tuple((start, change(p)) for start, p in pieces)
 
 
-def combine(join: Callable[[Polynomial, Polynomial], Polynomial], left: Pieces, right: Pieces) -> Pieces:
-    """``join`` on every common piece."""
-    return _merged([(start, join(*parts)) for start, parts in _aligned((left, right))])
+def combine(
+    join: Callable[[TimePolynomial, TimePolynomial], TimePolynomial], left: Pieces, right: Pieces
+) -> Pieces:
+    """Return the function with ``join`` applied to every common piece."""
+    return _joined_pieces([(start, join(*parts)) for start, parts in _on_common_pieces((left, right))])
 
 
 def greatest(left: Pieces, right: Pieces) -> Pieces:
-    """The larger of two functions at every time; pieces are split where the two cross."""
+    """Return the pointwise maximum; pieces are split where the two functions cross."""
     return _chosen(left, right, 1)
 
 
 def least(left: Pieces, right: Pieces) -> Pieces:
-    """The smaller of two functions at every time."""
+    """Return the pointwise minimum of two functions."""
     return _chosen(left, right, -1)
 
 
 def total(functions: Sequence[Pieces]) -> Pieces:
-    """The sum of functions, of which there is at least one."""
-    return _merged([(start, sum_of(parts)) for start, parts in _aligned(functions)])
+    """Return the sum of functions, of which there is at least one."""
+    return _joined_pieces([(start, sum_of(parts)) for start, parts in _on_common_pieces(functions)])
 
 
 def subtract(left: Pieces, right: Pieces) -> Pieces:
-    """``left - right``."""
+    """Return ``left - right``."""
     return combine(add, left, apply(negate, right))
 
 
 def where_sign(pieces: Pieces, signs: frozenset[int]) -> TruthSet:
-    """Where the sign (-1, 0 or 1) of the function is one of ``signs``."""
+    """Return the times at which the sign (-1, 0 or 1) of the function is one of ``signs``."""
     values: list[tuple[Cut, bool]] = []
     for (start, p), end in zip(pieces, _ends(pieces), strict=True):
         for point, at, after in _signs(p, start, end):
@@ -73,36 +75,36 @@ def where_sign(pieces: Pieces, signs: frozenset[int]) -> TruthSet:
 
 def _chosen(left: Pieces, right: Pieces, sign: int) -> Pieces:
     """``left`` where ``left - right`` has the given sign, else ``right``."""
-    common = _aligned((left, right))
-    chosen: list[tuple[Point, Polynomial]] = []
+    common = _on_common_pieces((left, right))
+    chosen: list[tuple[Point, TimePolynomial]] = []
     ends = [*(start for start, _ in common[1:]), None]
     for (start, (p, q)), end in zip(common, ends, strict=True):
         # Where the two meet they are equal, so the choice after a point is right at it, too.
         for point, _, after in _signs(add(p, negate(q)), start, end):
             chosen.append((point, p if after == sign else q))
-    return _merged(chosen)
+    return _joined_pieces(chosen)
 
 
-def _signs(p: Polynomial, start: Point, end: Point | None) -> list[tuple[Point, int, int]]:
+def _signs(p: TimePolynomial, start: Point, end: Point | None) -> list[tuple[Point, int, int]]:
     """(point, sign at it, sign after it) at ``start`` and at every root in (start, end)."""
     steady = _steady_sign(p.numerators, start, end)
     if steady:
         return [(start, steady, steady)]
     before, changes = _sign_changes(p.numerators)
     at = after = before
-    found: list[tuple[Point, int, int]] = []
+    later: list[tuple[Point, int, int]] = []
     for root, following in changes:
         if root > start:
             if end is not None and root >= end:
                 break
-            found.append((root, 0, following))
+            later.append((root, 0, following))
         else:
             at, after = (0 if root == start else following), following
-    return [(start, at, after), *found]
+    return [(start, at, after), *later]
 
 
 def _steady_sign(numerators: tuple[int, ...], start: Point, end: Point | None) -> int:
-    """The sign on all of [start, end] where it is quickly seen that there is one, else 0.
+    """Return the sign on all of [start, end] where a quick test shows that it is constant, else 0.
 
     Most pieces have no root; to factor their polynomials would cost a hundred times as much.
     """
@@ -128,24 +130,24 @@ def _sign_changes(numerators: tuple[int, ...]) -> tuple[int, tuple[tuple[Point, 
     return first, tuple(changes)
 
 
-def _aligned(functions: Sequence[Pieces]) -> list[tuple[Point, list[Polynomial]]]:
-    """All functions on their common pieces."""
+def _on_common_pieces(functions: Sequence[Pieces]) -> list[tuple[Point, list[TimePolynomial]]]:
+    """Return all functions on their common pieces."""
     longest = max(functions, key=len)
     if all(len(x) == 1 or _starts_alike(x, longest) for x in functions):
         return [
             (start, [x[k if len(x) > 1 else 0][1] for x in functions]) for k, (start, _) in enumerate(longest)
         ]
-    found: list[tuple[Point, list[Polynomial]]] = []
+    common: list[tuple[Point, list[TimePolynomial]]] = []
     start, places = functions[0][0][0], [0] * len(functions)
     while True:
-        found.append((start, [pieces[k][1] for pieces, k in zip(functions, places, strict=True)]))
+        common.append((start, [pieces[k][1] for pieces, k in zip(functions, places, strict=True)]))
         ahead = [
             (j, pieces[k + 1][0])
             for j, (pieces, k) in enumerate(zip(functions, places, strict=True))
             if k + 1 < len(pieces)
         ]
         if not ahead:
-            return found
+            return common
         start = min(point for _, point in ahead)
         for j, point in ahead:
             if point is start or point == start:
@@ -153,7 +155,7 @@ def _aligned(functions: Sequence[Pieces]) -> list[tuple[Point, list[Polynomial]]
 
 
 def _starts_alike(one: Pieces, other: Pieces) -> bool:
-    """Whether two functions have the same pieces, as those of one drive often have."""
+    """Return whether two functions have the same pieces, as those of one drive often have."""
     return one is other or (
         len(one) == len(other) and all(p is q or p == q for (p, _), (q, _) in zip(one, other, strict=True))
     )
@@ -163,10 +165,10 @@ def _ends(pieces: Pieces) -> list[Point | None]:
     return [*(after for _, (after, _) in pairwise(pieces)), None]
 
 
-def _merged(pieces: list[tuple[Point, Polynomial]]) -> Pieces:
-    """Without starts at which nothing changes."""
-    kept = pieces[:1]
+def _joined_pieces(pieces: list[tuple[Point, TimePolynomial]]) -> Pieces:
+    """Return the pieces without starts at which nothing changes."""
+    joined = pieces[:1]
     for start, p in pieces[1:]:
-        if p != kept[-1][1]:
-            kept.append((start, p))
-    return tuple(kept)
+        if p != joined[-1][1]:
+            joined.append((start, p))
+    return tuple(joined)

@@ -10,8 +10,8 @@ from math import comb, gcd, lcm
 
 
 @dataclass(frozen=True, slots=True)
-class Polynomial:
-    """Σ numerators[i]·tⁱ / denominator, reduced; no trailing zero, so the zero polynomial is ()."""
+class TimePolynomial:
+    """A polynomial Σ numerators[i]·tⁱ / denominator, reduced; zero is (), without trailing zeros."""
 
     numerators: tuple[int, ...]
     denominator: int
@@ -22,26 +22,26 @@ class Polynomial:
         return tuple(Fraction(n, self.denominator) for n in self.numerators)
 
 
-def polynomial(*coefficients: Fraction | int) -> Polynomial:
-    """From coefficients, lowest power first.
+def polynomial(*coefficients: Fraction | int) -> TimePolynomial:
+    """Return the polynomial with these coefficients, lowest power first.
 
     >>> polynomial(Fraction(1, 2), 0, Fraction(1, 3))
-    Polynomial(numerators=(3, 0, 2), denominator=6)
+    TimePolynomial(numerators=(3, 0, 2), denominator=6)
     """
     denominator = lcm(*(c.denominator for c in coefficients))
     return _reduced([c.numerator * (denominator // c.denominator) for c in coefficients], denominator)
 
 
-ZERO = Polynomial((), 1)
-ONE = Polynomial((1,), 1)
+ZERO = TimePolynomial((), 1)
+ONE = TimePolynomial((1,), 1)
 
 
-def add(left: Polynomial, right: Polynomial) -> Polynomial:
+def add(left: TimePolynomial, right: TimePolynomial) -> TimePolynomial:
     """``left + right``."""
     return sum_of((left, right))
 
 
-def sum_of(parts: Sequence[Polynomial]) -> Polynomial:
+def sum_of(parts: Sequence[TimePolynomial]) -> TimePolynomial:
     """The sum of polynomials, of which there is at least one."""
     denominator = lcm(*[p.denominator for p in parts])
     total = [0] * max([len(p.numerators) for p in parts])
@@ -52,16 +52,16 @@ def sum_of(parts: Sequence[Polynomial]) -> Polynomial:
     return _reduced(total, denominator)
 
 
-def multiply(left: Polynomial, right: Polynomial) -> Polynomial:
+def multiply(left: TimePolynomial, right: TimePolynomial) -> TimePolynomial:
     """``left * right``."""
     if not left.numerators or not right.numerators:
         return ZERO
     return _reduced(_times(left.numerators, right.numerators), left.denominator * right.denominator)
 
 
-def negate(p: Polynomial) -> Polynomial:
+def negate(p: TimePolynomial) -> TimePolynomial:
     """``-p``."""
-    return Polynomial(tuple(-n for n in p.numerators), p.denominator)
+    return TimePolynomial(tuple(-n for n in p.numerators), p.denominator)
 
 
 def shift(numerators: tuple[int, ...], by: Fraction) -> tuple[int, ...]:
@@ -81,7 +81,7 @@ def shift(numerators: tuple[int, ...], by: Fraction) -> tuple[int, ...]:
 
 
 def primitive(numerators: tuple[int, ...]) -> tuple[int, ...]:
-    """Without common factor, and with positive leading coefficient; the roots are the same."""
+    """Return coefficients without common factor and with positive leading one; the roots are the same."""
     factor = gcd(*numerators)
     if factor and numerators[-1] < 0:
         factor = -factor
@@ -89,7 +89,7 @@ def primitive(numerators: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def sign_at(numerators: tuple[int, ...], x: Fraction) -> int:
-    """The sign (-1, 0, 1) of an integer polynomial at a rational point."""
+    """Return the sign (-1, 0, 1) of an integer polynomial at a rational point."""
     top, bottom = x.numerator, x.denominator
     value, scale = 0, 1
     for n in reversed(numerators):
@@ -104,7 +104,7 @@ HALVINGS = 3
 def is_rootless(
     numerators: tuple[int, ...], low: Fraction, high: Fraction | None, halvings: int = HALVINGS
 ) -> bool:
-    """Whether Descartes' rule of signs shows that there is no root in [low, high], low < high.
+    """Return whether Descartes' rule of signs shows that there is no root in [low, high], low < high.
 
     ``high`` None: in [low, ∞). True is a proof; False only says that the rule does not tell, nor of halves,
     quarters and eighths. With t = (low + high·x)/(1 + x), x >= 0 is the interval, and a polynomial in x whose
@@ -114,13 +114,13 @@ def is_rootless(
     >>> is_rootless((-2, 0, 1), Fraction(0), Fraction(1)), is_rootless((-2, 0, 1), Fraction(1), Fraction(2))
     (True, False)
     """
-    found = _on_positive(numerators, low, high)
-    if not found or not found[0] or not found[-1]:
+    coefficients = _on_positive(numerators, low, high)
+    if not coefficients or not coefficients[0] or not coefficients[-1]:
         return False
-    sign = 1 if found[0] > 0 else -1
-    if all(x * sign >= 0 for x in found):
+    sign = 1 if coefficients[0] > 0 else -1
+    if all(x * sign >= 0 for x in coefficients):
         return True
-    if high is None or not halvings or found[-1] * sign < 0:
+    if high is None or not halvings or coefficients[-1] * sign < 0:
         return False
     middle = (low + high) / 2
     return is_rootless(numerators, low, middle, halvings - 1) and is_rootless(
@@ -139,15 +139,15 @@ def _on_positive(numerators: tuple[int, ...], low: Fraction, high: Fraction | No
     else:
         top, bottom = (at_low, high.numerator * (scale // high.denominator)), (scale, scale)
     # Σ n·topⁱ·bottom^(degree - i), by Horner's rule
-    found: list[int] = []
+    coefficients: list[int] = []
     power: list[int] = [1]
     for n in reversed(numerators):
-        found = _times(found, top)
-        found += [0] * (len(power) - len(found))
+        coefficients = _times(coefficients, top)
+        coefficients += [0] * (len(power) - len(coefficients))
         for i, x in enumerate(power):
-            found[i] += n * x
+            coefficients[i] += n * x
         power = _times(power, bottom)
-    return found
+    return coefficients
 
 
 def _times(left: Sequence[int], right: Sequence[int]) -> list[int]:
@@ -160,10 +160,10 @@ def _times(left: Sequence[int], right: Sequence[int]) -> list[int]:
     return product
 
 
-def _reduced(numerators: list[int], denominator: int) -> Polynomial:
+def _reduced(numerators: list[int], denominator: int) -> TimePolynomial:
     while numerators and numerators[-1] == 0:
         numerators.pop()
     factor = gcd(denominator, *numerators)
     if factor != 1:
-        return Polynomial(tuple(n // factor for n in numerators), denominator // factor)
-    return Polynomial(tuple(numerators), denominator)
+        return TimePolynomial(tuple(n // factor for n in numerators), denominator // factor)
+    return TimePolynomial(tuple(numerators), denominator)

@@ -1,27 +1,32 @@
-"""A drive replayed exactly: do boxes overlap, does a vehicle leave its limits, and when first.
+"""Replays a drive exactly: first overlap of two boxes, first breach of a vehicle's limits.
 
-Both questions are formulas, put to the exact judge.
+Both questions are formulas for the exact judge.
 """
+
+from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Comparison, Formula, boxes_overlap, conjunction, implication
 from roadproof.semantics.exact.algebraic import Point, decimal
-from roadproof.semantics.exact.exact import LazyJudge, judge
+from roadproof.semantics.exact.judging import LazyJudge, judge
 from roadproof.semantics.exact.truth import Cut, TruthSet, complement
 from roadproof.world.drive import Drive
-from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.units import unit_text
-from roadproof.world.vehicle import Range, Vehicle
+
+if TYPE_CHECKING:
+    from roadproof.world.reference_line import ReferenceLine
+    from roadproof.world.vehicle import Range, Vehicle
 
 
 @dataclass(frozen=True)
-class Overlap:
+class BoxOverlap:
     """Two boxes overlap with positive area from ``time`` on (not yet at it, where ``after``)."""
 
     first: str
@@ -46,26 +51,27 @@ class Breach:
         return f"{self.vehicle} breaks {self.rule} from {decimal(self.time)} s on"
 
 
-def first_overlap(drive: Drive, horizon: Fraction | None) -> Overlap | None:
-    """The first overlap of two boxes [s-length, s] × [d-width, d] within [0, horizon] (semantics §2).
+def first_overlap(drive: Drive, horizon: Fraction | None) -> BoxOverlap | None:
+    """Return the first overlap of two boxes [s-length, s] × [d-width, d] within [0, horizon] (semantics §2).
 
     Touching is no overlap. ``horizon`` in s; None is for ever. Raises ``UsageError`` where negative.
     """
     judge, pairs = LazyJudge.on(drive), combinations(sorted(drive.vehicles), 2)
-    found = _earliest((((a, b), judge.visit(boxes_overlap(a, b))) for a, b in pairs), horizon)
-    return None if found is None else Overlap(*found[1], *found[0])
+    overlap = _earliest((((a, b), judge.visit(boxes_overlap(a, b))) for a, b in pairs), horizon)
+    return None if overlap is None else BoxOverlap(*overlap[1], *overlap[0])
 
 
 def first_breach(
     drive: Drive, limits: Mapping[str, Vehicle], horizon: Fraction | None, line: ReferenceLine | None = None
 ) -> Breach | None:
-    """The first instant within [0, horizon] at which a vehicle leaves its limits, or None.
+    """Return the first instant within [0, horizon] at which a vehicle leaves its limits, or None.
 
-    Speeds and accelerations in their ranges, no reversing, |v_lat| <= lateral_share·v_lon, and on the bends
-    of ``line`` |v_lon²·κ + a_lat| <= a_bend. Raises ``UsageError`` for a vehicle without limits.
+    Checked are ranges of speeds and accelerations, no reversing, |v_lat| <= lateral_share·v_lon, and on the
+    bends of ``line`` |v_lon²·κ + a_lat| <= a_bend. Raises ``UsageError`` for a vehicle without limits.
     """
 
     def broken() -> Iterator[tuple[tuple[str, str], TruthSet]]:
+        """Yield each rule of each vehicle with the times at which it is broken."""
         for name in sorted(drive.vehicles):
             if name not in limits:
                 raise UsageError(f"vehicle={name} has no limits to be checked against: name its model")
@@ -73,8 +79,8 @@ def first_breach(
             for rule, formula in (*_rules(name, limits[name]), *bends):
                 yield (name, rule), complement(judge(formula, drive).truth(formula))
 
-    found = _earliest(broken(), horizon)
-    return None if found is None else Breach(*found[1], *found[0])
+    breach = _earliest(broken(), horizon)
+    return None if breach is None else Breach(*breach[1], *breach[0])
 
 
 def _rules(name: str, limits: Vehicle) -> Iterator[tuple[str, Formula]]:
@@ -96,7 +102,7 @@ def _rules(name: str, limits: Vehicle) -> Iterator[tuple[str, Formula]]:
 
 
 def _bend_rules(name: str, limits: Vehicle, line: ReferenceLine) -> Iterator[tuple[str, Formula]]:
-    """For each bend: while the front of the vehicle is on it, |v_lon²·κ + a_lat| <= a_bend.
+    """Yield for each bend the rule |v_lon²·κ + a_lat| <= a_bend while the front of the vehicle is on it.
 
     Where only bounds of κ are known, it holds for both.
     """
@@ -116,22 +122,22 @@ def _bend_rules(name: str, limits: Vehicle, line: ReferenceLine) -> Iterator[tup
                 )
             )
             across = t.Sum((t.Product((speed, speed, curvature)), t.Signal("a_lat", name)))
-            kept = conjunction(Compare(across, "<=", most), Compare(t.subtract(zero, most), "<=", across))
+            bounded = conjunction(Compare(across, "<=", most), Compare(t.subtract(zero, most), "<=", across))
             stretch = f"from s={float(bend.begin):g} m to {float(bend.end):g} m"
-            told = f"|v_lon²·κ + a_lat| <= {limits.a_bend} m/s² {stretch}"
-            yield told, implication(there, kept)
+            rule = f"|v_lon²·κ + a_lat| <= {limits.a_bend} m/s² {stretch}"
+            yield rule, implication(there, bounded)
 
 
 def _earliest(
     named: Iterable[tuple[tuple[str, str], TruthSet]], horizon: Fraction | None
 ) -> tuple[Cut, tuple[str, str]] | None:
-    """What begins first by ``horizon``, and when."""
+    """Return the first begin of a set by ``horizon``, and the name of that set."""
     begins = ((_first(truth, horizon), who) for who, truth in named)
     return min(((begin, who) for begin, who in begins if begin is not None), default=None)
 
 
 def _first(truth: TruthSet, horizon: Fraction | None) -> Cut | None:
-    """Where ``truth`` begins, if it does so by ``horizon``."""
+    """Return the begin of ``truth``, if it is not after ``horizon``."""
     if horizon is not None and horizon < 0:
         raise UsageError(f"horizon={horizon}: a drive starts at 0; ask for a horizon that is not negative")
     begin = truth.cuts[0] if truth.cuts else None

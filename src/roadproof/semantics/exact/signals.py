@@ -1,6 +1,6 @@
-"""Terms as functions of time, on a drive or on an abstract trace, and when a comparison of them is true.
+"""Evaluates terms as functions of time, on a drive or an abstract trace, and compares them.
 
-1/x with 1/0 = ∞ included (paper, appendix *Robust Semantics*).
+1/x is ∞ at 0 (paper, appendix *Robust Semantics*).
 """
 
 from collections.abc import Callable, Mapping
@@ -13,24 +13,24 @@ from roadproof.errors import InputError, RoadproofError, UsageError
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import code_of, refuse_value
 from roadproof.logic.formula import MIRRORED, Comparison
-from roadproof.logic.terms import Inverse, Own, Signal, Size, Term
+from roadproof.logic.terms import CustomSignal, Inverse, Signal, Size, Term
 from roadproof.semantics.exact import piecewise
 from roadproof.semantics.exact.piecewise import Pieces, where_sign
-from roadproof.semantics.exact.polynomial import ONE, Polynomial, multiply, polynomial
+from roadproof.semantics.exact.polynomial import ONE, TimePolynomial, multiply, polynomial
 from roadproof.semantics.exact.truth import TruthSet, intersection, union
 from roadproof.world.drive import Drive, Motion
-from roadproof.world.motion import State, starts_of
+from roadproof.world.motion import State, piece_starts
 
 LARGEST_DEGREE = 24
 
 
 class Signals(Protocol):
-    """Where the judge finds vehicles: signals as pieces, sizes in m, kinds as numbers.
+    """The source of signals as pieces, sizes in m, kinds as numbers.
 
-    Both raise ``UsageError`` for vehicles that are not there, ``InputError`` for what is not said of them.
+    Both methods raise ``UsageError`` for unknown vehicles, ``InputError`` for missing values.
     """
 
-    def signal(self, signal: Signal | Own) -> Pieces: ...
+    def signal(self, signal: Signal | CustomSignal) -> Pieces: ...
 
     def size(self, size: Size) -> Fraction: ...
 
@@ -42,21 +42,22 @@ class DriveSignals:
     drive: Drive
     _starts: dict[str, tuple[State, ...]] = field(default_factory=dict, repr=False, compare=False)
 
-    def signal(self, signal: Signal | Own) -> Pieces:
-        if isinstance(signal, Own):
+    def signal(self, signal: Signal | CustomSignal) -> Pieces:
+        """Return a signal of a vehicle, or a custom one, as pieces."""
+        if isinstance(signal, CustomSignal):
             return self._own(signal)
         if signal.vehicle not in self._starts:
-            self._starts[signal.vehicle] = starts_of(self._motion(signal.vehicle))
-        return tuple((x.time, course(signal.name, x)) for x in self._starts[signal.vehicle])
+            self._starts[signal.vehicle] = piece_starts(self._motion(signal.vehicle))
+        return tuple((x.time, signal_polynomial(signal.name, x)) for x in self._starts[signal.vehicle])
 
-    def _own(self, signal: Own) -> Pieces:
+    def _own(self, signal: CustomSignal) -> Pieces:
         """Raises ``InputError`` for a value that the declaration of the signal excludes."""
         if signal.vehicle:
             self._motion(signal.vehicle)
-        course = self.drive.own.get((signal.name, signal.vehicle))
+        course = self.drive.custom_signals.get((signal.name, signal.vehicle))
         if course is None:
             raise InputError(
-                f"the drive says nothing of {signal.told}: derive the signal (signal … derived by …), or "
+                f"the drive says nothing of {signal.text}: derive the signal (signal … derived by …), or "
                 "take a drive that was found for a formula that speaks of it"
             )
         for start, value in course:
@@ -64,6 +65,7 @@ class DriveSignals:
         return tuple((start, polynomial(value)) for start, value in course)
 
     def size(self, size: Size) -> Fraction:
+        """Return a size (m) or kind (code) of a vehicle."""
         motion = self._motion(size.vehicle)
         match size.name:
             case "length":
@@ -90,14 +92,15 @@ class DriveSignals:
 class AbstractSignals:
     """Signals that are constant on pieces: ascending (start, value), the first start 0."""
 
-    signals: Mapping[Signal | Own, tuple[tuple[Fraction, Fraction], ...]]
+    signals: Mapping[Signal | CustomSignal, tuple[tuple[Fraction, Fraction], ...]]
     sizes: Mapping[Size, Fraction]
 
-    def signal(self, signal: Signal | Own) -> Pieces:
+    def signal(self, signal: Signal | CustomSignal) -> Pieces:
+        """Return a signal of the trace as pieces."""
         if signal not in self.signals:
             of = f" of vehicle={signal.vehicle}" if signal.vehicle else ""
             raise UsageError(f"the trace has no {signal.name}{of}: add it")
-        if isinstance(signal, Own):
+        if isinstance(signal, CustomSignal):
             for start, value in self.signals[signal]:
                 refuse_value(signal, value, f"at {start} s")
         return tuple((start, polynomial(value)) for start, value in self.signals[signal])
@@ -110,16 +113,16 @@ class AbstractSignals:
 
 @dataclass(frozen=True)
 class LineSignals:
-    """States along a line: what the judge takes for time is a value that runs, and signals depend on it.
+    """States along a line: the judge's time is a running value on which signals depend.
 
-    ``refuse`` makes the error for a signal or a size, such as ``v_lon(SV)``, that no state has.
+    ``refuse`` makes the error for a signal or size, such as ``v_lon(SV)``, that no state has.
     """
 
-    courses: Mapping[Signal | Own, Polynomial]
+    courses: Mapping[Signal | CustomSignal, TimePolynomial]
     sizes: Mapping[Size, Fraction]
     refuse: Callable[[str], RoadproofError]
 
-    def signal(self, signal: Signal | Own) -> Pieces:
+    def signal(self, signal: Signal | CustomSignal) -> Pieces:
         if signal not in self.courses:
             raise self.refuse(f"{signal.name}({signal.vehicle})")
         return piecewise.constant(self.courses[signal])
@@ -131,19 +134,19 @@ class LineSignals:
 
 
 def unknown_at_instant(what: str) -> InputError:
-    """The error of states that were observed at an instant."""
+    """Return the error for a value that was not observed at an instant."""
     return InputError(f"nothing is known of {what} at this instant")
 
 
 @dataclass(frozen=True)
-class Courses:
-    """Terms to pieces, each computed once."""
+class TermPieces:
+    """Terms as piecewise functions of time, each computed once."""
 
     signals: Signals
     _known: dict[Term, Pieces] = field(default_factory=dict, repr=False, compare=False)
 
     def of(self, term: Term) -> Pieces:
-        """``term`` as a function of time. Raises ``InputError`` for what is not bound or not finite."""
+        """Return ``term`` as a function of time. Raises ``InputError`` if it is not bound or not finite."""
         if term not in self._known:
             self._known[term] = self._of(term)
         return self._known[term]
@@ -152,7 +155,7 @@ class Courses:
         match term:
             case t.Number(value, _):
                 return piecewise.constant(polynomial(value))
-            case t.Signal() | t.Own():
+            case t.Signal() | t.CustomSignal():
                 return self.signals.signal(term)
             case t.Size():
                 return piecewise.constant(polynomial(self.signals.size(term)))
@@ -184,8 +187,8 @@ class Courses:
         return Fraction(value.numerators[0], value.denominator)
 
 
-def course(name: t.SignalName, x: State) -> Polynomial:
-    """A signal on the piece that starts in state ``x``, as a polynomial in time since 0."""
+def signal_polynomial(name: t.SignalName, x: State) -> TimePolynomial:
+    """Return a signal on the piece that starts in state ``x``, as a polynomial in time since 0."""
     begin = x.time
     match name:
         case "s":
@@ -206,19 +209,19 @@ def course(name: t.SignalName, x: State) -> Polynomial:
             assert_never(name)
 
 
-def _from(begin: Fraction, *coefficients: Fraction) -> Polynomial:
+def _from(begin: Fraction, *coefficients: Fraction) -> TimePolynomial:
     """A polynomial in time since 0, from the coefficients of the one in time since ``begin``."""
-    found = list(coefficients)
-    while found and found[-1] == 0:
-        found.pop()
+    shifted = list(coefficients)
+    while shifted and shifted[-1] == 0:
+        shifted.pop()
     # Horner's division by t - (-begin), once for each coefficient: what is left are those of the other one.
-    for lowest in range(len(found) - 1):
-        for k in range(len(found) - 2, lowest - 1, -1):
-            found[k] -= begin * found[k + 1]
-    return polynomial(*found)
+    for lowest in range(len(shifted) - 1):
+        for k in range(len(shifted) - 2, lowest - 1, -1):
+            shifted[k] -= begin * shifted[k + 1]
+    return polynomial(*shifted)
 
 
-def _product(left: Polynomial, right: Polynomial) -> Polynomial:
+def _product(left: TimePolynomial, right: TimePolynomial) -> TimePolynomial:
     degree = len(left.numerators) + len(right.numerators) - 2
     if degree > LARGEST_DEGREE:
         raise InputError(
@@ -228,7 +231,7 @@ def _product(left: Polynomial, right: Polynomial) -> Polynomial:
     return multiply(left, right)
 
 
-def _power(p: Polynomial, exponent: int) -> Polynomial:
+def _power(p: TimePolynomial, exponent: int) -> TimePolynomial:
     if not 0 <= exponent <= LARGEST_DEGREE:
         raise InputError(f"a power has exponent={exponent}: it must lie between 0 and {LARGEST_DEGREE}")
     return reduce(_product, [p] * exponent, ONE)
@@ -245,8 +248,8 @@ POSITIVE, ZERO, NEGATIVE = frozenset({1}), frozenset({0}), frozenset({-1})
 NONZERO = POSITIVE | NEGATIVE
 
 
-def compare_truth(courses: Courses, left: Term, op: Comparison, right: Term) -> TruthSet:
-    """When ``left op right`` holds; ∞ >= ∞ is true and ∞ > ∞ false."""
+def compare_truth(courses: TermPieces, left: Term, op: Comparison, right: Term) -> TruthSet:
+    """Return the times at which ``left op right`` holds; ∞ >= ∞ is true and ∞ > ∞ false."""
     match left, right:
         case Inverse(x), Inverse(y):
             return _two_inverses(courses.of(x), op, courses.of(y))
@@ -254,7 +257,7 @@ def compare_truth(courses: Courses, left: Term, op: Comparison, right: Term) -> 
             return _one_inverse(courses.of(x), op, courses.of(right))
         case _, Inverse(y):
             return _one_inverse(courses.of(y), MIRRORED[op], courses.of(left))
-        case _:
+        case _:  # open: two terms, neither of which is an inverse
             return where_sign(piecewise.subtract(courses.of(left), courses.of(right)), TRUE_SIGNS[op])
 
 

@@ -1,4 +1,4 @@
-"""When something is true: sets of instants in [0, ∞) with finitely many switches, and STL on them.
+"""Truth sets: sets of instants in [0, ∞) with finitely many switches, and STL operators on them.
 
 A *cut* lies just before or just after a point. A set is the ascending list of the cuts at which its
 truth changes, being false before the first. So [p, q) is the cuts before p and before q, and the
@@ -15,14 +15,14 @@ from roadproof.semantics.exact.algebraic import Point, decimal, moved
 
 
 class Cut(NamedTuple):
-    """Just before ``point`` (``after`` False) or just after it."""
+    """A position just before ``point`` (``after`` False) or just after it."""
 
     point: Point
     after: bool
 
 
 class Span(NamedTuple):
-    """What lies between two cuts; ``end`` None is for ever."""
+    """The interval between two cuts; ``end`` None is for ever."""
 
     begin: Cut
     end: Cut | None
@@ -38,11 +38,11 @@ class TruthSet:
     cuts: tuple[Cut, ...]
 
     def at(self, time: Point) -> bool:
-        """Whether the set holds the instant ``time`` >= 0."""
+        """Return whether the set contains the instant ``time`` >= 0."""
         return bisect_right(self.cuts, Cut(time, False)) % 2 == 1
 
     def spans(self) -> tuple[Span, ...]:
-        """Maximal intervals, ascending."""
+        """Return the maximal intervals, ascending."""
         ends: list[Cut | None] = [*self.cuts[1::2]]
         if len(self.cuts) % 2 == 1:
             ends.append(None)
@@ -58,7 +58,7 @@ ALWAYS = TruthSet((START,))
 
 
 def show_span(span: Span) -> str:
-    """One interval of a truth set, in seconds."""
+    """Return one interval of a truth set as text, in seconds."""
     begin, end = span
     if end is None:
         return f"{'(' if begin.after else '['}{decimal(begin.point)}, ∞)"
@@ -69,7 +69,7 @@ def show_span(span: Span) -> str:
 
 
 def from_values(values: Iterable[tuple[Cut, bool]]) -> TruthSet:
-    """From ascending cuts, the first ``START``, each with the truth that holds from it on."""
+    """Return the set from ascending cuts, the first ``START``, each with the truth from it on."""
     cuts: list[Cut] = []
     current = False
     for cut, value in values:
@@ -80,7 +80,7 @@ def from_values(values: Iterable[tuple[Cut, bool]]) -> TruthSet:
 
 
 def from_switches(switches: Iterable[tuple[Point, bool, bool]]) -> TruthSet:
-    """From ascending (point, truth at it, truth after it up to the next); the first point is 0."""
+    """Return the set from ascending (point, truth at it, truth after it); the first point is 0."""
     return from_values(
         (cut, value)
         for point, at, after in switches
@@ -89,72 +89,71 @@ def from_switches(switches: Iterable[tuple[Point, bool, bool]]) -> TruthSet:
 
 
 def interval(low: Point, high: Point | None, closed: str = "[]") -> TruthSet:
-    """One interval of times >= 0; ``closed`` is ``[]``, ``[)``, ``(]`` or ``()``; high None is for ever."""
+    """Return an interval of times >= 0; ``closed``: ``[]``, ``[)``, ``(]`` or ``()``; high None: for ever."""
     begin = Cut(low, closed[0] == "(")
-    return _covered([Span(begin, None if high is None else Cut(high, closed[1] == "]"))], 1)
+    return _overlapped([Span(begin, None if high is None else Cut(high, closed[1] == "]"))], 1)
 
 
 def complement(truth: TruthSet) -> TruthSet:
-    """Not."""
+    """Return the complement (not)."""
     if truth.cuts[:1] == (START,):
         return TruthSet(truth.cuts[1:])
     return TruthSet((START, *truth.cuts))
 
 
 def intersection(sets: Iterable[TruthSet]) -> TruthSet:
-    """And; of none it is always."""
-    wanted = tuple(sets)
-    return _covered(_spans(wanted), len(wanted)) if wanted else ALWAYS
+    """Return the intersection (and); of no sets it is always."""
+    operands = tuple(sets)
+    return _overlapped(_spans(operands), len(operands)) if operands else ALWAYS
 
 
 def union(sets: Iterable[TruthSet]) -> TruthSet:
-    """Or; of none it is never."""
-    return _covered(_spans(tuple(sets)), 1)
+    """Return the union (or); of no sets it is never."""
+    return _overlapped(_spans(tuple(sets)), 1)
 
 
 def eventually(low: Fraction, high: Fraction | None, body: TruthSet) -> TruthSet:
-    """F_[low, high]: some t in [low, high] has body at T+t; high None is unbounded.
+    """Return F_[low, high]: some t in [low, high] has body at T+t; high None is unbounded.
 
-    An interval ⟨l, r⟩ of the body makes it true on ⟨l - high, r - low⟩, ends as they are.
+    An interval ⟨l, r⟩ of the body makes it true on ⟨l - high, r - low⟩, with open or closed ends kept.
     """
-    return _covered(_reaching(low, high, body.spans()), 1)
+    return _overlapped(_shifted_back(low, high, body.spans()), 1)
 
 
 def always(low: Fraction, high: Fraction | None, body: TruthSet) -> TruthSet:
-    """G_[low, high]: every t in [low, high] has body at T+t."""
+    """Return G_[low, high]: every t in [low, high] has body at T+t."""
     return complement(eventually(low, high, complement(body)))
 
 
 def until(left: TruthSet, low: Fraction, high: Fraction | None, right: TruthSet) -> TruthSet:
-    """U_[low, high] of semantics §1: some t in [low, high] has right at T+t, and left at T+t' for every
-    t' in [low, t).
+    """Return U_[low, high] of semantics §1: right at T+t for some t in [low, high], left on T + [low, t).
 
-    At T it is the until that starts with 0, seen from T + low. That one holds where right does, and,
-    on each maximal interval ⟨p, q⟩ of left, where right comes within high - low at a point of
-    [p, q]: it may come at q itself even if left fails there.
+    At T it is the until that starts with 0, seen from T + low. That one holds where right does, and, on each
+    maximal interval ⟨p, q⟩ of left, where right comes within high - low at a point of [p, q]: it may come
+    at q itself even if left fails there.
     """
     length = None if high is None else high - low
-    found = list(right.spans())
+    reached = list(right.spans())
     for span in left.spans():
         begin, end = span
         reach = Span(Cut(begin.point, False), None if end is None else Cut(end.point, True))
         targets = [met for other in right.spans() if (met := _meet(other, reach)) is not None]
-        for reaching in _reaching(Fraction(0), length, targets):
+        for reaching in _shifted_back(Fraction(0), length, targets):
             met = _meet(reaching, span)
             if met is not None:
-                found.append(met)
-    return _covered(_reaching(low, low, _covered(found, 1).spans()), 1)
+                reached.append(met)
+    return _overlapped(_shifted_back(low, low, _overlapped(reached, 1).spans()), 1)
 
 
-def _reaching(low: Fraction, high: Fraction | None, spans: Iterable[Span]) -> list[Span]:
-    """Each span moved to where it is reached within [low, high], cut off at time 0."""
-    found: list[Span] = []
+def _shifted_back(low: Fraction, high: Fraction | None, spans: Iterable[Span]) -> list[Span]:
+    """Return each span moved to the times from which it is reached within [low, high], cut off at 0."""
+    shifted: list[Span] = []
     for begin, end in spans:
         first = START if high is None else max(START, _moved(begin, -high))
         last = None if end is None else _moved(end, -low)
         if last is None or first < last:
-            found.append(Span(first, last))
-    return found
+            shifted.append(Span(first, last))
+    return shifted
 
 
 def _moved(cut: Cut, by: Fraction) -> Cut:
@@ -173,8 +172,8 @@ def _spans(sets: Iterable[TruthSet]) -> Iterator[Span]:
         yield from truth.spans()
 
 
-def _covered(spans: Iterable[Span], times: int) -> TruthSet:
-    """Where at least ``times`` of the spans overlap."""
+def _overlapped(spans: Iterable[Span], times: int) -> TruthSet:
+    """Return the times at which at least ``times`` of the spans overlap."""
     steps: list[tuple[Cut, int]] = []
     for begin, end in spans:
         steps.append((begin, 1))
@@ -185,8 +184,8 @@ def _covered(spans: Iterable[Span], times: int) -> TruthSet:
     depth, inside = 0, False
     for i, (cut, change) in enumerate(steps):
         depth += change
-        settled = i + 1 == len(steps) or steps[i + 1][0] != cut
-        if settled and (depth >= times) != inside:
+        complete = i + 1 == len(steps) or steps[i + 1][0] != cut
+        if complete and (depth >= times) != inside:
             inside = not inside
             cuts.append(cut)
     return TruthSet(tuple(cuts))

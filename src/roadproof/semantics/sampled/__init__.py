@@ -1,4 +1,4 @@
-"""Recorded traces: ``compile(formulas)`` to a ``Monitor``, ``monitor.evaluate(batch)`` to verdicts."""
+"""The monitor for recorded traces: ``compile(formulas).evaluate(batch)`` returns verdicts."""
 
 from roadproof.semantics.sampled.answers import Margin, Margins, TruthArrays, Verdicts
 from roadproof.semantics.sampled.batch import Batch

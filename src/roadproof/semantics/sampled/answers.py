@@ -1,4 +1,4 @@
-"""What a monitor answers, and how answers are read off the values of a formula."""
+"""Verdicts and margins of a monitor, and how they are read from the values of a formula."""
 
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from roadproof.errors import InputError
 from roadproof.logic.formula import Application, Formula
 from roadproof.semantics.sampled.batch import Array, Batch, Integers, inside
 from roadproof.semantics.sampled.boolean import BITS, unpack
-from roadproof.semantics.sampled.semantics import Evaluation, View
+from roadproof.semantics.sampled.lattice import LatticeEvaluation, View
 
 Convention: TypeAlias = Literal["truncated", "clip"]
 When: TypeAlias = Literal["start", "all"]
@@ -21,7 +21,7 @@ Key = TypeVar("Key", bound=Hashable)
 
 @dataclass(frozen=True)
 class TruthArrays:
-    """What is known of a formula: ``true`` for every continuation, ``false`` for every, or neither.
+    """The three-valued truth of a formula: ``true`` or ``false`` for every continuation, or neither.
 
     Shape (traces,) at the start of each trace, or (time, traces), where neither holds after the end.
     """
@@ -36,7 +36,7 @@ class TruthArrays:
 
 @dataclass(frozen=True)
 class Verdicts(Generic[Key]):
-    """Answers by what was asked, and of named sub-formulas at all samples if asked for."""
+    """The answer to each question; on request also of named sub-formulas, at all samples."""
 
     convention: Convention
     answers: Mapping[Key, TruthArrays]
@@ -45,7 +45,7 @@ class Verdicts(Generic[Key]):
 
 @dataclass(frozen=True)
 class Margin:
-    """The margin lies in [low, high] whatever comes after the trace; with ``clip`` they are equal.
+    """The bounds [low, high] of a margin over all continuations of a trace; with ``clip`` they are equal.
 
     Shape as in ``TruthArrays``; NaN after the end of a trace.
     """
@@ -56,13 +56,15 @@ class Margin:
 
 @dataclass(frozen=True)
 class Margins(Generic[Key]):
+    """The margin of each question, and of named sub-formulas."""
+
     convention: Convention
     margins: Mapping[Key, Margin]
     named: Mapping[Application, Margin]
 
 
 def views(convention: Convention) -> tuple[View, View]:
-    """In which view a formula is surely true, and in which it is not surely false."""
+    """Return the view in which a true formula is certain, and the one in which a false formula is."""
     return (View.CLIP, View.CLIP) if convention == "clip" else (View.STRONG, View.WEAK)
 
 
@@ -75,7 +77,7 @@ def check_starts(starts: Integers | None, lengths: Integers) -> None:
 
 
 def read_bits(words: Array, end: Array | None, traces: int, starts: Integers | None) -> NDArray[np.bool_]:
-    """Truth at the ``starts`` of traces, or at all samples, false after the ``end`` (``packed_inside``)."""
+    """Return truth at ``starts``, or at all samples, false after the ``end`` (from ``packed_inside``)."""
     if starts is None:
         return unpack(words if end is None else words & end, traces)
     index = np.arange(traces)
@@ -84,14 +86,14 @@ def read_bits(words: Array, end: Array | None, traces: int, starts: Integers | N
 
 
 def no_margin(batch: Batch, when: When) -> Margin:
-    """Room for the margins of one formula, NaN until they are known."""
+    """Return arrays for the margins of one formula, filled with NaN."""
     shape = (batch.traces,) if when == "start" else (batch.samples, batch.traces)
     return Margin(np.full(shape, np.nan), np.full(shape, np.nan))
 
 
 def store_margin(
     margin: Margin,
-    evaluation: Evaluation,
+    evaluation: LatticeEvaluation,
     formula: Formula,
     convention: Convention,
     batch: Batch,
@@ -99,7 +101,7 @@ def store_margin(
     when: When,
     starts: Integers | None,
 ) -> None:
-    """Write the margins of the traces in ``columns`` where they belong."""
+    """Store the margins of the traces in ``columns``."""
     for view, made in zip(views(convention), (margin.low, margin.high), strict=True):
         if when == "start" and starts is None:
             made[columns] = evaluation.first(formula, view)

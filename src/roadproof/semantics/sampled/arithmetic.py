@@ -1,8 +1,8 @@
-"""Comparisons of terms over blocks of samples: one straight program, each sub-term computed once.
+"""Evaluates comparisons over blocks of samples by straight-line bytecode, each sub-term once.
 
 Arithmetic is IEEE double in a fixed order, the same as in ``extensions.traffic.evaluate.recursive``: a
-sub-term without signals is one exact rational rounded once; sums and products run from left to right; a power
-is a repeated product. Comparisons are strict or not exactly as written.
+sub-term without signals is one exact rational rounded once; sums and products run from left to right; a
+power is a repeated product. Comparisons are strict or not exactly as written.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -28,26 +28,28 @@ COMPARISONS: dict[Comparison, Operation] = {
 
 
 def invert(values: Array) -> Array:
-    """1/x, and ∞ where x = 0, of either sign (paper, appendix *Robust Semantics*)."""
+    """Return 1/x, and ∞ where x = 0, of either sign (paper, appendix *Robust Semantics*)."""
     with np.errstate(divide="ignore", over="ignore"):
         return np.where(values == 0, np.inf, np.divide(1.0, values))
 
 
 def difference(left: Array, right: Array) -> Array:
-    """``left - right``, and 0 for two equal infinities."""
+    """Return ``left - right``, and 0 for two equal infinities."""
     with np.errstate(invalid="ignore"):
         return np.where(left == right, 0.0, np.subtract(left, right))
 
 
 @dataclass(frozen=True)
 class Load:
-    """A leaf: a constant, a signal or a size."""
+    """A step that loads a constant, a signal or a size."""
 
-    leaf: float | t.Signal | t.Size | t.Own
+    leaf: float | t.Signal | t.Size | t.CustomSignal
 
 
 @dataclass(frozen=True)
 class Apply:
+    """A step that applies an operation to the results of earlier steps."""
+
     operation: Operation
     operands: tuple[int, ...]
 
@@ -56,10 +58,10 @@ Step: TypeAlias = Load | Apply
 
 
 @dataclass(frozen=True)
-class Program:
-    """Steps in order, each the input of later ones; ``results`` are the steps asked for.
+class Bytecode:
+    """A straight-line program: steps in order, each an input of later ones; ``results`` are its outputs.
 
-    ``dead[k]`` are the steps that nobody needs after step k.
+    ``dead[k]`` are the steps whose values are no longer needed after step k.
     """
 
     steps: tuple[Step, ...]
@@ -67,23 +69,23 @@ class Program:
     dead: tuple[tuple[int, ...], ...]
 
 
-def truth_program(comparisons: Sequence[Compare]) -> Program:
-    """The truth (bool) of every comparison."""
-    return _program(comparisons, lambda c: (COMPARISONS[c.op], False))
+def truth_program(comparisons: Sequence[Compare]) -> Bytecode:
+    """Return the bytecode for the truth (bool) of every comparison."""
+    return _compiled(comparisons, lambda c: (COMPARISONS[c.op], False))
 
 
-def margin_program(comparisons: Sequence[Compare]) -> Program:
-    """By how much every comparison holds: larger minus smaller side, negative where it fails."""
+def margin_program(comparisons: Sequence[Compare]) -> Bytecode:
+    """Return the bytecode for margins: larger minus smaller side, negative where a comparison fails."""
 
     def operation(compare: Compare) -> tuple[Operation, bool]:
         infinite = any(isinstance(side, t.Inverse) for side in (compare.left, compare.right))
         return (difference if infinite else np.subtract), compare.op in ("<", "<=")
 
-    return _program(comparisons, operation)
+    return _compiled(comparisons, operation)
 
 
-def run(program: Program, batch: Batch, rows: slice, columns: slice) -> list[Array]:
-    """Values of the results on a block of samples × traces, shape (rows, columns).
+def run(program: Bytecode, batch: Batch, rows: slice, columns: slice) -> list[Array]:
+    """Return the results on a block of samples × traces, each of shape (rows, columns).
 
     Raises ``InputError`` where a value inside a trace leaves the range of floating-point numbers.
     """
@@ -100,7 +102,7 @@ def run(program: Program, batch: Batch, rows: slice, columns: slice) -> list[Arr
         ) from None
 
 
-def _run(program: Program, batch: Batch, rows: slice, columns: slice, clean: bool) -> list[Array]:
+def _run(program: Bytecode, batch: Batch, rows: slice, columns: slice, clean: bool) -> list[Array]:
     shape = (rows.stop - rows.start, columns.stop - columns.start)
     inside = np.arange(rows.start, rows.stop)[:, None] < batch.lengths[None, columns] if clean else None
     values: list[Any] = [None] * len(program.steps)
@@ -119,13 +121,17 @@ def _run(program: Program, batch: Batch, rows: slice, columns: slice, clean: boo
 
 
 def _load(
-    leaf: float | t.Signal | t.Size | t.Own, batch: Batch, rows: slice, columns: slice, inside: Array | None
+    leaf: float | t.Signal | t.Size | t.CustomSignal,
+    batch: Batch,
+    rows: slice,
+    columns: slice,
+    inside: Array | None,
 ) -> Any:
     match leaf:
         case float():
             return np.float64(leaf)
-        case t.Own():
-            block = _own(leaf, batch, rows, columns)
+        case t.CustomSignal():
+            block = _load_custom(leaf, batch, rows, columns)
             return block if inside is None else np.where(inside, block, 1.0)
         case t.Signal(name, vehicle):
             signal = batch.signals.get((name, vehicle))
@@ -144,73 +150,76 @@ def _load(
             assert_never(leaf)
 
 
-def _own(own: t.Own, batch: Batch, rows: slice, columns: slice) -> Array:
-    """An own signal, whose values have to be there and within what is declared."""
-    signal = batch.signals.get((own.name, own.vehicle))
+def _load_custom(signal: t.CustomSignal, batch: Batch, rows: slice, columns: slice) -> Array:
+    """Return a block of a custom signal, checked against its declaration."""
+    values = batch.signals.get((signal.name, signal.vehicle))
     source = f"{batch.source}: " if batch.source else ""
-    if signal is None:
-        raise InputError(f"{source}the batch has no signal {own.told}, which the formula needs")
-    block = signal[rows, columns].astype(np.float64, copy=False)
-    within = np.isin(block, (0.0, 1.0)) if own.truth else np.isfinite(block)
+    if values is None:
+        raise InputError(f"{source}the batch has no signal {signal.text}, which the formula needs")
+    block = values[rows, columns].astype(np.float64, copy=False)
+    within = np.isin(block, (0.0, 1.0)) if signal.truth else np.isfinite(block)
     with np.errstate(invalid="ignore"):
-        within &= block >= (-np.inf if own.low is None else float(own.low))
-        within &= block <= (np.inf if own.high is None else float(own.high))
+        within &= block >= (-np.inf if signal.low is None else float(signal.low))
+        within &= block <= (np.inf if signal.high is None else float(signal.high))
     wrong = np.argwhere(~within & (np.arange(rows.start, rows.stop)[:, None] < batch.lengths[None, columns]))
     if len(wrong):
         sample, trace = wrong[0]
         value = float(block[sample, trace])
         where = f"in trace {columns.start + trace} at sample {rows.start + sample}"
         if not np.isfinite(value):
-            raise InputError(f"{source}{own.told} {where} is missing, or no finite number; fill the gap")
-        refuse_value(own, value, where, source)
+            raise InputError(f"{source}{signal.text} {where} is missing, or no finite number; fill the gap")
+        refuse_value(signal, value, where, source)
     return block
 
 
-def _program(
+def _compiled(
     comparisons: Sequence[Compare], operation: Callable[[Compare], tuple[Operation, bool]]
-) -> Program:
-    building = _Builder()
+) -> Bytecode:
+    building = _BytecodeBuilder()
     results = []
     for compare in comparisons:
         left, right = building.place(compare.left), building.place(compare.right)
         compute, swapped = operation(compare)
         results.append(building.apply(compute, *((right, left) if swapped else (left, right))))
-    return Program(tuple(building.steps), tuple(results), _dead(building.steps, results))
+    return Bytecode(tuple(building.steps), tuple(results), _dead(building.steps, results))
 
 
 def _dead(steps: Sequence[Step], results: Iterable[int]) -> tuple[tuple[int, ...], ...]:
     last_use = {k: index for index, s in enumerate(steps) if isinstance(s, Apply) for k in s.operands}
-    kept = set(results)
+    needed = set(results)
     dead: list[list[int]] = [[] for _ in steps]
     for k, index in last_use.items():
-        if k not in kept:
+        if k not in needed:
             dead[index].append(k)
     return tuple(tuple(d) for d in dead)
 
 
-class _Builder:
+class _BytecodeBuilder:
     def __init__(self) -> None:
         self.steps: list[Step] = []
         self.known: dict[Step, int] = {}
         self.placed: dict[t.Term, int] = {}
 
     def add(self, step: Step) -> int:
+        """Return the number of a step, appended if it is new."""
         if step not in self.known:
             self.known[step] = len(self.steps)
             self.steps.append(step)
         return self.known[step]
 
     def apply(self, operation: Operation, *operands: int) -> int:
+        """Append an operation on earlier steps and return its number."""
         return self.add(Apply(operation, operands))
 
     def fold(self, operation: Operation, operands: Iterable[t.Term]) -> int:
+        """Append a chain of a binary operation over terms, from left to right."""
         first, *rest = (self.place(x) for x in operands)
         for operand in rest:
             first = self.apply(operation, first, operand)
         return first
 
     def place(self, term: t.Term) -> int:
-        """The step that computes ``term``."""
+        """Return the step that computes ``term``."""
         if term not in self.placed:
             self.placed[term] = self._place(term)
         return self.placed[term]
@@ -220,7 +229,7 @@ class _Builder:
         if constant is not None:
             return self.add(Load(float(constant)))
         match term:
-            case t.Signal() | t.Size() | t.Own():
+            case t.Signal() | t.Size() | t.CustomSignal():
                 return self.add(Load(term))
             case t.Sum(terms):
                 return self.sum_of(terms)
@@ -242,17 +251,18 @@ class _Builder:
                 assert_never(term)
 
     def sum_of(self, terms: tuple[t.Term, ...]) -> int:
-        """x + (-1)·y is x - y to the last bit, and one operation cheaper."""
+        """Append a sum; x + (-1)·y is x - y to the last bit, and one operation cheaper."""
         total = self.place(terms[0])
         for term in terms[1:]:
             match term:
                 case t.Product((t.Number(value, _), negated)) if value == -1:
                     total = self.apply(np.subtract, total, self.place(negated))
-                case _:
+                case _:  # open: terms of another shape are added
                     total = self.apply(np.add, total, self.place(term))
         return total
 
     def power_of(self, base: t.Term, exponent: int) -> int:
+        """Append a power as a repeated product."""
         if exponent < 0:
             raise InputError(f"exponent={exponent}: a power must not be negative; write inverse(…)")
         if exponent == 0:

@@ -23,7 +23,7 @@ class Batch:
 
     ``signals`` and ``given`` are of shape (time, traces), ``sizes`` and ``lengths`` of shape (traces,).
     Trace i has the samples 0 … lengths[i]-1; what the arrays hold after them is never read into an
-    answer. Own signals are among ``signals``, with the vehicle '' where they are of none. ``given`` holds
+    answer. Custom signals are among ``signals``, with the vehicle '' where they are of none. ``given`` holds
     the truth of state formulas that the monitor need not compute, found by structure (names of definitions
     do not matter): lane predicates on a measured road, above all.
     ``source``: where the traces are from, for messages. Units are SI; float32 signals are widened to float64
@@ -66,12 +66,12 @@ class Batch:
 
 
 def inside(lengths: Integers, samples: int) -> NDArray[np.bool_]:
-    """Which samples belong to their traces, shape (samples, traces)."""
+    """Return which samples belong to their traces, shape (samples, traces)."""
     return np.arange(samples)[:, None] < lengths[None, :]
 
 
 def steps_of(bound: Fraction, dt: Fraction) -> int:
-    """An interval bound (s) as a number of steps of ``dt``.
+    """Return an interval bound (s) as a number of steps of ``dt``.
 
     Raises ``InputError`` where the bound is no multiple of ``dt``: 0.5 s at 25 Hz is 12.5 steps.
     """
@@ -111,7 +111,7 @@ def _check_signal(what: str, values: Array, lengths: Integers, finite: bool) -> 
     if values.dtype not in (np.dtype(np.float64), np.dtype(np.float32)):
         raise InputError(f"{what} must be an array of float64 or float32, not of {values.dtype}")
     if not finite:
-        return  # an own signal, of which more is known where a formula speaks of it
+        return  # a custom signal, of which more is known where a formula speaks of it
     rows = max(1, 65536 // len(lengths))  # small blocks stay in the cache
     for start in range(0, int(lengths.max()), rows):
         block = values[start : start + rows]

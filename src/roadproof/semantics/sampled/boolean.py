@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadproof.logic.formula import Compare, Formula
-from roadproof.semantics.sampled.arithmetic import Program, run
+from roadproof.semantics.sampled.arithmetic import Bytecode, run
 from roadproof.semantics.sampled.batch import Array, Batch, Integers, inside
-from roadproof.semantics.sampled.semantics import Lattice
+from roadproof.semantics.sampled.lattice import Lattice
 
 BITS = 64
 TRUTH = Lattice(
@@ -26,7 +26,7 @@ TRUTH = Lattice(
 
 
 def pack(truth: NDArray[np.bool_]) -> NDArray[np.uint64]:
-    """Truth of shape (time, traces) as words of shape (time, words)."""
+    """Return truth of shape (time, traces) as words of shape (time, words)."""
     words = np.zeros((len(truth), words_for(truth.shape[1])), dtype="<u8")
     packed = np.packbits(truth, axis=1, bitorder="little")
     words.view(np.uint8)[:, : packed.shape[1]] = packed
@@ -34,25 +34,25 @@ def pack(truth: NDArray[np.bool_]) -> NDArray[np.uint64]:
 
 
 def unpack(words: Array, traces: int) -> NDArray[np.bool_]:
-    """Words of shape (time, words) as truth of shape (time, traces)."""
+    """Return words of shape (time, words) as truth of shape (time, traces)."""
     unpacked = np.unpackbits(np.ascontiguousarray(words).view(np.uint8), axis=1, bitorder="little")
     return unpacked[:, :traces].view(np.bool_)
 
 
 def words_for(traces: int) -> int:
-    """How many words hold the bits of so many traces."""
+    """Return the number of words for the bits of so many traces."""
     return -(-traces // BITS)
 
 
 def packed_inside(lengths: Integers, samples: int) -> NDArray[np.uint64] | None:
-    """All bits of the samples that belong to their traces, or None where that is every sample."""
+    """Return the bits of the samples that belong to their traces; None where that is every sample."""
     return None if (lengths == samples).all() else pack(inside(lengths, samples))
 
 
 def observe_truth(
-    comparisons: Sequence[Compare], program: Program, batch: Batch, threads: int
+    comparisons: Sequence[Compare], program: Bytecode, batch: Batch, threads: int
 ) -> dict[Formula, NDArray[np.uint64]]:
-    """The packed truth of every comparison at every sample of ``batch``; ``program`` is that of them."""
+    """Return the packed truth of every comparison at every sample of ``batch``; ``program`` computes them."""
     words = [np.zeros((batch.samples, words_for(batch.traces)), dtype="<u8") for _ in comparisons]
     blocks = list(_blocks(batch))
     if comparisons and threads > 1:
@@ -66,7 +66,7 @@ def observe_truth(
 
 
 def _observe_block(
-    program: Program, batch: Batch, words: list[NDArray[np.uint64]], rows: slice, columns: slice
+    program: Bytecode, batch: Batch, words: list[NDArray[np.uint64]], rows: slice, columns: slice
 ) -> None:
     first = columns.start // 8
     for all_bits, truth in zip(words, run(program, batch, rows, columns), strict=True):

@@ -1,7 +1,7 @@
 """The monitor: formulas compiled once, evaluated over batches of recorded traces.
 
-All formulas of a monitor share what they have in common: sub-formulas are found by structure, not
-by the name of the definition that they come from.
+All formulas of a monitor share equal sub-formulas, which are found by structure, not by the name of the
+definition that they come from.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Generic
+from typing import Generic, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.custom_names import own_of
+from roadproof.logic.custom_names import custom_signals_of
 from roadproof.logic.formula import Application, Compare, Formula
 from roadproof.logic.rewrite import bounds_of, intervals_of, signals_of, terms_of, without_names
-from roadproof.logic.terms import Own
+from roadproof.logic.terms import CustomSignal
 from roadproof.semantics.sampled.answers import (
     Convention,
     Key,
@@ -34,9 +34,10 @@ from roadproof.semantics.sampled.answers import (
     store_margin,
     views,
 )
-from roadproof.semantics.sampled.arithmetic import Program, margin_program, truth_program
+from roadproof.semantics.sampled.arithmetic import Bytecode, margin_program, truth_program
 from roadproof.semantics.sampled.batch import Array, Batch, Integers
 from roadproof.semantics.sampled.boolean import BITS, TRUTH, observe_truth, pack, packed_inside, unpack
+from roadproof.semantics.sampled.lattice import LatticeEvaluation, View
 from roadproof.semantics.sampled.robustness import (
     MARGIN,
     as_margin,
@@ -44,15 +45,14 @@ from roadproof.semantics.sampled.robustness import (
     observe_margins,
     trace_blocks,
 )
-from roadproof.semantics.sampled.semantics import Evaluation, View
 from roadproof.world.signals import SignalName
 
 
 @dataclass(frozen=True)
 class Observation:
-    """Packed truth of state formulas over a batch: all that Boolean evaluation needs of it.
+    """The packed truth of state formulas over a batch, all that Boolean evaluation needs of it.
 
-    ``composites`` takes the truth of those that are made of ``leaves``, once an evaluation has needed it.
+    ``composites`` caches the truth of formulas made of ``leaves``, once an evaluation has needed it.
     """
 
     dt: Fraction
@@ -63,11 +63,11 @@ class Observation:
 
     @cached_property
     def inside(self) -> NDArray[np.uint64] | None:
-        """The samples that belong to their traces; None where all do."""
+        """The mask of samples that belong to their traces; None where all do."""
         return packed_inside(self.lengths, self.samples)
 
     def cut(self, lengths: Integers) -> "Observation":
-        """The same traces, each ending after its first ``lengths`` samples."""
+        """Return the observation of the first ``lengths`` samples of each trace."""
         if lengths.shape != self.lengths.shape or (lengths < 1).any() or (lengths > self.lengths).any():
             raise InputError("a trace is cut to a length from 1 to the one it has")
         return replace(self, lengths=lengths)
@@ -75,25 +75,25 @@ class Observation:
 
 @dataclass(frozen=True)
 class Monitor(Generic[Key]):
-    """``formulas`` as they were given; ``plain`` are the same without names, sharing sub-trees.
+    """A compiled set of formulas; ``plain`` are they without names of definitions, sharing sub-trees.
 
-    ``named``: sub-formulas that have names, and what each is without. ``signals``: what they speak of, of
-    any vehicle; own signals of some vehicle stand for all.
+    ``named``: sub-formulas that have names, and each without its name. ``signals``: the signals they need, of
+    any vehicle; custom signals of some vehicle stand for all.
     """
 
     formulas: Mapping[Key, Formula]
     plain: Mapping[Key, Formula]
     states: frozenset[Formula]
-    signals: tuple[SignalName | Own, ...]
-    programs: dict[tuple[Compare, ...], Program] = field(default_factory=dict, repr=False, compare=False)
+    signals: tuple[SignalName | CustomSignal, ...]
+    programs: dict[tuple[Compare, ...], Bytecode] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
     def named(self) -> Mapping[Application, Formula]:
         nodes = [x for x in f.subformulas(*self.formulas.values()) if isinstance(x, Application)]
-        return dict(zip(nodes, f.share(nodes, _unnamed), strict=True))
+        return dict(zip(nodes, f.hash_cons(nodes, _unnamed), strict=True))
 
     def observe(self, batch: Batch, known: Observation | None = None, threads: int = 1) -> Observation:
-        """The truth of all state formulas at all samples, ``known`` taken over where it has them."""
+        """Return the truth of all state formulas at all samples, reusing ``known`` where it has them."""
         leaves: dict[Formula, Array] = {}
         composites: dict[Formula, Array] = {}
         if known is not None:
@@ -119,11 +119,11 @@ class Monitor(Generic[Key]):
         named: bool = False,
         threads: int = 1,
     ) -> Verdicts[Key]:
-        """The answer to every formula at the start of each trace, or ``at`` all samples.
+        """Return the answer to every formula at the start of each trace, or ``at`` all samples.
 
-        ``starts`` gives the sample at which each trace starts (0 if not given). With ``named``,
-        every named sub-formula is answered too, at all samples. Raises ``InputError`` for interval
-        bounds that are no multiple of the step, and for signals and lanes that the batch has not.
+        ``starts``: the sample at which each trace starts (default 0), shape (traces,). With ``named``,
+        named sub-formulas are answered too, at all samples. Raises ``InputError`` for interval bounds that
+        are no multiple of the step, and for signals and lanes that the batch lacks.
         """
         seen = self.observe(batch, threads=threads) if isinstance(batch, Batch) else batch
         check_starts(starts, seen.lengths)
@@ -134,8 +134,8 @@ class Monitor(Generic[Key]):
             return TruthArrays(*(read_bits(x, evaluation.inside, traces, starts) for x in (strong, ~weak)))
 
         if at == "start" and starts is None:
-            asked = [(formula, view) for formula in self.plain.values() for view in views(semantics)]
-            known = _first_bits(evaluation, asked, traces)
+            questions = [(formula, view) for formula in self.plain.values() for view in views(semantics)]
+            known = _first_bits(evaluation, questions, traces)
             answers = [*map(TruthArrays, known[::2], ~known[1::2])]
         else:
             answers = [answer(x, starts if at == "start" else None) for x in self.plain.values()]
@@ -148,18 +148,20 @@ class Monitor(Generic[Key]):
     def holds(
         self, batch: Batch | Observation, semantics: Convention = "truncated", at: When = "start"
     ) -> dict[Key, NDArray[np.bool_]]:
-        """Where each formula is true for every continuation: ``true`` of ``evaluate``, for half the work."""
+        """Return where each formula is true for every continuation, for half the work of ``evaluate``."""
         seen = self.observe(batch) if isinstance(batch, Batch) else batch
         evaluation, traces, view = self._evaluation(seen), len(seen.lengths), views(semantics)[0]
         if at == "start":
-            asked = [(formula, view) for formula in self.plain.values()]
-            return dict(zip(self.plain, _first_bits(evaluation, asked, traces), strict=True))
+            questions = [(formula, view) for formula in self.plain.values()]
+            return dict(zip(self.plain, _first_bits(evaluation, questions, traces), strict=True))
         values = {name: evaluation.value(formula, view) for name, formula in self.plain.items()}
         return {name: read_bits(x, evaluation.inside, traces, None) for name, x in values.items()}
 
-    def _evaluation(self, seen: Observation) -> Evaluation:
+    def _evaluation(self, seen: Observation) -> LatticeEvaluation:
         shape = (seen.samples, -(-len(seen.lengths) // BITS))
-        return Evaluation(TRUTH, seen.leaves, seen.inside, seen.dt, shape, self.states, seen.composites)
+        return LatticeEvaluation(
+            TRUTH, seen.leaves, seen.inside, seen.dt, shape, self.states, seen.composites
+        )
 
     def measure(
         self,
@@ -171,7 +173,7 @@ class Monitor(Generic[Key]):
         threads: int = 1,
         samples_in_block: int = 24_000,
     ) -> Margins[Key]:
-        """The margin of every formula; arguments and errors as in ``evaluate``."""
+        """Return the margin of every formula; arguments and errors as in ``evaluate``."""
         check_starts(starts, batch.lengths)
         given = _given(batch)
         comparisons = tuple(self._comparisons(given))
@@ -180,6 +182,7 @@ class Monitor(Generic[Key]):
         named_margins = {name: no_margin(batch, "all") for name in self.named} if named else {}
 
         def measure_block(columns: slice) -> None:
+            """Measure the traces in ``columns`` and store their margins."""
             evaluation = self._margin_evaluation(batch, given, comparisons, program, columns)
             begin = None if starts is None else starts[columns]
             for name, formula in self.plain.items():
@@ -193,7 +196,7 @@ class Monitor(Generic[Key]):
         return Margins(semantics, margins, named_margins)
 
     def rests_on(self, given: Iterable[Formula]) -> bool:
-        """Whether the truth of these state formulas is all that a batch has to say. Raises ``InputError``."""
+        """Return whether a batch needs only the truth of these state formulas. Raises ``InputError``."""
         return not any(True for _ in self._comparisons({without_names(formula) for formula in given}))
 
     def _margin_evaluation(
@@ -201,17 +204,17 @@ class Monitor(Generic[Key]):
         batch: Batch,
         given: Mapping[Formula, Array],
         comparisons: tuple[Compare, ...],
-        program: Program,
+        program: Bytecode,
         columns: slice,
-    ) -> Evaluation:
+    ) -> LatticeEvaluation:
         samples = int(batch.lengths[columns].max())
         leaves: dict[Formula, Array] = {g: as_margin(v[:samples, columns]) for g, v in given.items()}
         leaves |= observe_margins(comparisons, program, batch, columns)
         shape = (samples, columns.stop - columns.start)
-        return Evaluation(MARGIN, leaves, margin_inside(batch, columns), batch.dt, shape, self.states)
+        return LatticeEvaluation(MARGIN, leaves, margin_inside(batch, columns), batch.dt, shape, self.states)
 
     def _comparisons(self, given: Collection[Formula]) -> Iterator[Compare]:
-        """Comparisons outside ``given``, each once. Raises ``InputError`` for an unknown lane predicate."""
+        """Yield comparisons outside ``given``, each once. Raises ``InputError`` for open lane predicates."""
         seen: set[Formula] = set()
         waiting = list(self.plain.values())
         while waiting:
@@ -227,30 +230,34 @@ class Monitor(Generic[Key]):
                         f"the batch does not say where {_shown(current)} holds: "
                         "add it to the given formulas of the batch, or bind the formula to a road"
                     )
-                case _:
+                case f.Truth() | f.Not() | f.And() | f.Or() | f.Application():
                     waiting.extend(f.children(current))
+                case f.Until() | f.Eventually() | f.Always():
+                    waiting.extend(f.children(current))
+                case _:
+                    assert_never(current)
 
 
 def compile(formulas: Mapping[Key, Formula], shared: dict[Formula, Formula] | None = None) -> Monitor[Key]:
-    """A monitor for some formulas, by names or values of the caller's choice; mistakes show them as text.
+    """Return a monitor for formulas under names or values of the caller's choice, used in error messages.
 
-    Every parameter must have its value (``with_values``); lanes may be open where the batch gives
-    the truth of the formulas that speak of them. ``shared``: sub-formulas of other monitors of the same
-    batches, which takes those of this one: then looking one up compares objects alone. Raises ``InputError``.
+    Every parameter must have its value (``with_values``); lanes may be open where the batch gives the truth
+    of the formulas about them. ``shared``: sub-formulas of other monitors of the same batches, to which this
+    one adds its own, so look-ups compare objects alone. Raises ``InputError``.
     """
     _check_closed(formulas)
-    plain = dict(zip(formulas, f.share(formulas.values(), _unnamed, shared), strict=True))
-    own = {(x.name, not x.vehicle): x for x in own_of(formulas.values())}.values()
+    plain = dict(zip(formulas, f.hash_cons(formulas.values(), _unnamed, shared), strict=True))
+    own = {(x.name, not x.vehicle): x for x in custom_signals_of(formulas.values())}.values()
     states = frozenset(x for x in f.subformulas(*plain.values()) if f.is_state(x))
     return Monitor(dict(formulas), plain, states, (*signals_of(formulas.values()), *own))
 
 
 def _first_bits(
-    evaluation: Evaluation, asked: Sequence[tuple[Formula, View]], traces: int
+    evaluation: LatticeEvaluation, questions: Sequence[tuple[Formula, View]], traces: int
 ) -> NDArray[np.bool_]:
-    """The truth of each formula and view at the first sample of each trace."""
-    words = np.zeros((len(asked), evaluation.shape[1]), "<u8")
-    for row, (formula, view) in zip(words, asked, strict=True):
+    """Return the truth of each formula and view at the first sample, shape (questions, traces)."""
+    words = np.zeros((len(questions), evaluation.shape[1]), "<u8")
+    for row, (formula, view) in zip(words, questions, strict=True):
         row[:] = evaluation.first(formula, view)
     return unpack(words, traces)
 
@@ -299,5 +306,5 @@ def _shown(formula: Formula) -> str:
             return (
                 f"{type(formula).__name__.lower()} {variable} in {domain.kind}({domain.of}): {_shown(body)}"
             )
-        case _:
+        case _:  # open: longer formulas are not shown
             return "…"

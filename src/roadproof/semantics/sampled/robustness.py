@@ -1,9 +1,9 @@
 """Margins over recorded traces: by how much a formula holds (> 0) or fails (< 0).
 
 The usual quantitative semantics (Fainekos and Pappas 2009; Donzé and Maler 2010): a comparison is
-the difference of its sides, ``and`` a minimum, ``or`` a maximum. A state formula that is given as
-truth counts as ±∞: its truth is known, its distance is not. What lies after the end of a trace is
--∞ in the strong view and ∞ in the weak one.
+the difference of its sides, ``and`` a minimum, ``or`` a maximum. A state formula given as truth
+counts as ±∞: its truth is known, its distance is not. The padding after the end of a trace is -∞
+in the strong view and ∞ in the weak one.
 """
 
 from collections.abc import Iterator, Sequence
@@ -12,29 +12,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadproof.logic.formula import Compare, Formula
-from roadproof.semantics.sampled.arithmetic import Program, run
+from roadproof.semantics.sampled.arithmetic import Bytecode, run
 from roadproof.semantics.sampled.batch import Array, Batch, inside
-from roadproof.semantics.sampled.semantics import Lattice
+from roadproof.semantics.sampled.lattice import Lattice
 
 MARGIN = Lattice(join=np.maximum, meet=np.minimum, complement=np.negative, bottom=-np.inf, top=np.inf)
 
 
 def as_margin(truth: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """∞ for true, -∞ for false."""
+    """Return ∞ for true, -∞ for false."""
     return np.where(truth, np.inf, -np.inf)
 
 
 def margin_inside(batch: Batch, columns: slice) -> NDArray[np.float64] | None:
-    """∞ at the samples of the traces in ``columns``, else -∞; None where that is every sample."""
+    """Return ∞ at the samples of the traces in ``columns``, else -∞; None where that is every sample."""
     lengths = batch.lengths[columns]
     samples = int(lengths.max())
     return None if (lengths == samples).all() else as_margin(inside(lengths, samples))
 
 
 def observe_margins(
-    comparisons: Sequence[Compare], program: Program, batch: Batch, columns: slice
+    comparisons: Sequence[Compare], program: Bytecode, batch: Batch, columns: slice
 ) -> dict[Formula, Array]:
-    """Margins of the comparisons for some traces, shape (samples of the longest, traces)."""
+    """Return margins of the comparisons for some traces, shape (samples of the longest, traces)."""
     samples = int(batch.lengths[columns].max())
     margins = [np.empty((samples, columns.stop - columns.start)) for _ in comparisons]
     height = max(1, 32768 // (columns.stop - columns.start))
@@ -51,7 +51,7 @@ def observe_margins(
 
 
 def trace_blocks(batch: Batch, samples_in_block: int) -> Iterator[slice]:
-    """Neighbouring traces, together about ``samples_in_block`` samples."""
+    """Yield slices of neighbouring traces with about ``samples_in_block`` samples together."""
     width = max(1, samples_in_block // batch.samples)
     for start in range(0, batch.traces, width):
         yield slice(start, min(start + width, batch.traces))

@@ -15,9 +15,10 @@ import pytest
 import roadproof as rp
 from console import environment
 from roadproof.extensions.assurance.build_results.junit import as_junit
+from roadproof.extensions.assurance.build_results.meanings import MEANINGS
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.cases import MEANINGS, Case, Location
+from roadproof.frontends.report.cases import Case, Location
 from roadproof.verdict import ExitCode, Verdict
 
 ROOT = Path(__file__).parents[4]

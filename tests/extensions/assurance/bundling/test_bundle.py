@@ -109,9 +109,12 @@ def test_evidence_that_is_rejected_is_told(home: Path) -> None:
         (["nowhere"], {"out": "x.tar.gz"}, "nowhere does not exist"),
         (["/etc/hostname"], {"out": "x.tar.gz"}, "is outside of"),
         (["proofs"], {"out": "x.tar.gz", "sign": "own.spec"}, "openssl genpkey"),
+        (["proofs"], {"out": "x.tar.gz", "wheel": "own.spec"}, "is no wheel of roadproof"),
+        (["proofs"], {"out": "x.tar.gz", "wheel": "numpy-2-py3-none-any.whl"}, "is no wheel of roadproof"),
     ],
 )
 def test_mistakes(home: Path, results: list[str], options: dict[str, str], told: str) -> None:
+    (home / "numpy-2-py3-none-any.whl").write_bytes(b"another package")
     with pytest.raises((InputError, UsageError, MissingSolverError), match=told):
         rp.bundle(*results, **options)
     assert not list(home.glob("x.*"))

@@ -15,12 +15,12 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
-from roadproof.extensions.assurance.answers.trace import Position
+from roadproof.extensions.assurance.answers.trace import RequirementPlace
 from roadproof.extensions.assurance.requirements.requirement import Link, Requirement
 from roadproof.extensions.assurance.requirements.sources import read_requirements
 
 ROOT = Path(__file__).parents[4]
-NOWHERE = Position(file="")
+NOWHERE = RequirementPlace(file="")
 TOML = """\
 [trace]
 evidence = ["brake.json"]

@@ -14,13 +14,13 @@ import roadproof as rp
 from roadproof.errors import InputError, TextError
 from roadproof.evidence.finding import Acceptance, Finding, Kind
 from roadproof.evidence.subject import DriverSide, SubjectKind, TestedSide
-from roadproof.extensions.assurance.answers.trace import LinkKind, LinkState, Position
+from roadproof.extensions.assurance.answers.trace import LinkKind, LinkState, RequirementPlace
 from roadproof.extensions.assurance.requirements.checked_evidence import CheckedEvidence, read_findings
-from roadproof.extensions.assurance.requirements.fingerprints import Surroundings, differences, parts_of
-from roadproof.extensions.assurance.requirements.matching import combined, read_target, shown_by
+from roadproof.extensions.assurance.requirements.fingerprints import TraceContext, differences, parts_of
+from roadproof.extensions.assurance.requirements.matching import combined_state, findings_of_link, read_target
 from roadproof.extensions.assurance.requirements.requirement import Link, Requirement
 from roadproof.library.loading import bundled_library
-from roadproof.reasons import NO_REASON, Why
+from roadproof.reasons import NO_REASON, ReasonKind
 
 HOME = bundled_library().select()
 GOOD = Acceptance.ACCEPTED
@@ -52,7 +52,9 @@ OURS = "F v_lon(SV) > 3 m/s"
 
 
 def state(link: Link, *findings: Finding) -> tuple[LinkState, str]:
-    return combined(link.kind, shown_by(read_target(link, HOME, "here"), checked(*findings), {}, Path()))
+    return combined_state(
+        link.kind, findings_of_link(read_target(link, HOME, "here"), checked(*findings), {}, Path())
+    )
 
 
 def checked(*findings: Finding) -> list[CheckedEvidence]:
@@ -102,7 +104,7 @@ def test_evidence_that_is_not_accepted_shows_nothing(outcome: Acceptance, expect
             ("claim", "scenario"), Finding("x.json", "certificate", GOOD, NO_REASON, "PROVED", "", OURS)
         ),
     }
-    bad = replace(found[kind], outcome=outcome, reason=Why.TOLD("why"))
+    bad = replace(found[kind], outcome=outcome, reason=ReasonKind.TOLD("why"))
     assert state(Link(kind, links[kind]), bad) == (expected, "why")  # type: ignore[arg-type]
 
 
@@ -122,7 +124,7 @@ def test_a_refutation_counts_before_a_proof_and_a_proof_before_a_doubt() -> None
 def test_only_accepted_evidence_of_the_opposite_refutes(
     outcome: Acceptance, verdict: str, claim: str, scenario: str
 ) -> None:
-    found = Finding("x.json", "certificate", outcome, Why.TOLD("why"), verdict, "", f"not ({OURS})")
+    found = Finding("x.json", "certificate", outcome, ReasonKind.TOLD("why"), verdict, "", f"not ({OURS})")
     accepted = outcome is GOOD
     assert state(Link("claim", OURS), found)[0] == (claim if accepted else "missing")
     assert state(Link("scenario", OURS), found)[0] == (scenario if accepted else "missing")
@@ -176,8 +178,8 @@ def test_only_proofs_without_assumptions_hold_for_every_value(kind: Kind, claim:
         )
     )
     link = Link("claim", "P1 base")
-    owner = Requirement("A", "text", Position(file="r.toml"), links=(link,))
-    around = Surroundings(HOME, Path())
+    owner = Requirement("A", "text", RequirementPlace(file="r.toml"), links=(link,))
+    around = TraceContext(HOME, Path())
     parts = parts_of(owner, read_target(link, HOME, "here"), found, around)
     assert ("value of minDanger" in parts) == values
     assert {"parameter minDanger", "definition danger", "text of A", "roadproof"} <= parts.keys()
@@ -202,9 +204,9 @@ def test_only_proofs_without_assumptions_hold_for_every_value(kind: Kind, claim:
         ({"subject": SubjectKind.FACT, "shows": ""}, "missing", "there is no evidence for it"),
         ({"name": "CUT-11"}, "missing", "there is no evidence for it"),
         (
-            {"outcome": Acceptance.REJECTED, "reason": Why.TEST_GONE()},
+            {"outcome": Acceptance.REJECTED, "reason": ReasonKind.TEST_GONE()},
             "stale",
-            Why.TEST_GONE(),
+            ReasonKind.TEST_GONE(),
         ),
     ],
 )
@@ -316,7 +318,7 @@ def test_a_driver_verdict_of_another_test_or_model_shows_nothing() -> None:
     assert state(Link("driver", "CUT-1: careful preventable"), evidence)[0] == "witnessed"
     for target in ("CUT-2: careful preventable", "CUT-1: rss preventable"):
         assert state(Link("driver", target), evidence)[0] == "missing"
-    rejected = replace(evidence, outcome=Acceptance.REJECTED, reason=Why.TOLD("another"))
+    rejected = replace(evidence, outcome=Acceptance.REJECTED, reason=ReasonKind.TOLD("another"))
     assert state(Link("driver", "CUT-1: careful preventable"), rejected)[0] == "rejected"
     plate = replace(evidence, subject=SubjectKind.PLATE)
     assert state(Link("driver", "CUT-1: careful preventable"), plate)[0] == "missing"
@@ -331,13 +333,13 @@ def test_a_driver_link_says_test_model_and_side(target: str) -> None:
 
 
 def test_a_driver_link_rests_on_the_verdicts_of_its_test() -> None:
-    requirement = Requirement("R", "text", Position(file="x"))
+    requirement = Requirement("R", "text", RequirementPlace(file="x"))
     target = read_target(Link("driver", "CUT-1: careful preventable"), HOME, "here")
     parts = []
     for side in ("preventable", "undecided"):
         decided = DriverSide(driver="careful", scenario="scenario_1", side=side)
         evidence = checked(replace(TEST, drivers=(decided,)))
-        parts.append(parts_of(requirement, target, evidence, Surroundings(HOME, Path())))
+        parts.append(parts_of(requirement, target, evidence, TraceContext(HOME, Path())))
     assert any("driver verdicts of test CUT-1" in x for x in differences(*parts))
 
 
@@ -386,5 +388,5 @@ def test_a_drive_is_stale_by_values_that_are_given_or_declared(
 ) -> None:
     [judged] = checked(PLATE)
     link = Link("plate", "careful-Vy-1")
-    found = shown_by(read_target(link, HOME, "here"), [replace(judged, values=values)], given, Path())
-    assert combined("plate", found)[0] == expected
+    found = findings_of_link(read_target(link, HOME, "here"), [replace(judged, values=values)], given, Path())
+    assert combined_state("plate", found)[0] == expected

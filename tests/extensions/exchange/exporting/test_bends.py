@@ -22,7 +22,7 @@ from roadproof.extensions.exchange.export.points import centre
 from roadproof.extensions.exchange.export.subject import subject_of
 from roadproof.extensions.exchange.openscenario import read_scenario
 from roadproof.library.loading import bundled_library
-from roadproof.semantics.exact.algebraic import approximate
+from roadproof.semantics.exact.algebraic import as_float
 from roadproof.semantics.exact.replay import first_breach
 from roadproof.world.bends import on_bends
 from roadproof.world.drive import Drive, motion_of
@@ -60,7 +60,7 @@ def test_a_drive_that_is_too_fast_for_a_bend_breaks_a_limit() -> None:
     assert broken is not None
     assert broken.rule.startswith("|v_lon²·κ + a_lat| <= 3 m/s²")
     # On the spiral, which begins at 300 m: κ = 3/39², so (3/39² / (1/400)) of 120 m.
-    place = 250 + 39 * float(approximate(broken.time))
+    place = 250 + 39 * float(as_float(broken.time))
     assert place == pytest.approx(300 + 120 * 400 * 3 / 39**2, abs=0.01)
 
 
@@ -102,7 +102,7 @@ def test_a_verdict_is_the_same_on_every_road_with_the_same_lanelets(path: Path) 
     moved = random.Random(path.stem).choice(list(file.drive.vehicles))
     motion = file.drive.vehicles[moved]
     vehicles = {**file.drive.vehicles, moved: replace(motion, s=motion.s + 3)}
-    changed = Drive(vehicles, file.drive.own)
+    changed = Drive(vehicles, file.drive.custom_signals)
     one, other = (judge_file(replace(x, drive=changed), library) for x in (file, bent))
     assert (one.accepted, one.reason) == (other.accepted, other.reason)
 

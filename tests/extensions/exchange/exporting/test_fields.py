@@ -14,11 +14,11 @@ from pathlib import Path
 
 import pytest
 
-from extensions.exchange.exporting.kept import TURN, motion, subject
+from extensions.exchange.exporting.shipped_drives import TURN, motion, subject
 from roadproof.errors import UsageError
 from roadproof.extensions.exchange.export.openscenario import polyline_of
 from roadproof.extensions.exchange.export.registry import FORMATS
-from roadproof.extensions.exchange.export.subject import Subject, subject_of
+from roadproof.extensions.exchange.export.subject import ExportSubject, subject_of
 from roadproof.world.road import Lanelet, Road
 
 EXPECTED = Path(__file__).parent / "expected"
@@ -26,7 +26,7 @@ EXPECTED = Path(__file__).parent / "expected"
 
 
 @pytest.fixture(scope="module")
-def made() -> Subject:
+def made() -> ExportSubject:
     drifts = motion((None, "0", "0"), start=("10", "2.6", "30", "1"), size=("2.5", "1.8"))
     brakes = motion((None, "-12", "0"), start=("60", "-0.9", "40", "0"), size=("12.5", "2.4"))
     speeds_up = ("0.5", "12", "0"), (None, "0", "0")
@@ -38,7 +38,7 @@ def made() -> Subject:
     return replace(subject("merge", "2", **motions), number=3, rate=2)
 
 
-def file_of(made: Subject, format_: str, name: str) -> str:
+def file_of(made: ExportSubject, format_: str, name: str) -> str:
     return FORMATS[format_](made)[name].decode("utf-8")
 
 
@@ -51,12 +51,12 @@ def rounded(text: str) -> str:
 
 
 @pytest.mark.parametrize("format_", FORMATS)
-def test_each_file_has_every_element_and_column(format_: str, made: Subject) -> None:
+def test_each_file_has_every_element_and_column(format_: str, made: ExportSubject) -> None:
     for name, content in FORMATS[format_](made).items():
         assert rounded(content.decode("utf-8")) == rounded((EXPECTED / name).read_text("utf-8")), name
 
 
-def test_each_expected_file_is_written(made: Subject) -> None:
+def test_each_expected_file_is_written(made: ExportSubject) -> None:
     written = {name for write in FORMATS.values() for name in write(made)}
     assert written == {path.name for path in EXPECTED.iterdir()}
 
@@ -136,7 +136,7 @@ def test_own_signals_are_columns_of_the_vehicles_that_have_them() -> None:
         ("gaze", "SV"): ((Fraction(0), Fraction(2)), (Fraction(1), Fraction(3))),
         ("red", ""): ((Fraction(0), Fraction(1)),),
     }
-    drive = replace(made.file.drive, own=courses)
+    drive = replace(made.file.drive, custom_signals=courses)
     rows = rows_of(file_of(replace(made, file=replace(made.file, drive=drive), rate=2), "csv", "made.csv"))
     assert [*rows[0]][10:] == ["gaze", "red"]
     assert [(x["time"], x["vehicle"], x["gaze"], x["red"]) for x in rows] == [

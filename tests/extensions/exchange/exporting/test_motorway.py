@@ -11,7 +11,7 @@ import pytest
 
 import roadproof as rp
 from extensions.exchange.exporting.integration import integrated
-from extensions.exchange.exporting.kept import kept
+from extensions.exchange.exporting.shipped_drives import shipped_drives
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
 from roadproof.extensions.exchange.export.points import centre
@@ -114,16 +114,16 @@ def test_a_drive_has_the_same_verdict_on_every_road_with_the_same_lanelets(
 ) -> None:
     """By the judge, and by the monitor of an exported file."""
     seed, library = random.Random(number), bundled_library()
-    name = seed.choice([*kept()])
-    straight = longer(kept()[name])
+    name = seed.choice([*shipped_drives()])
+    straight = longer(shipped_drives()[name])
     if seed.random() < 0.3:
         straight = replace(straight, formula=f"not ({straight.formula})", scenario=None)
     file = replace(straight, road=replace(straight.road, line=bent(seed)))
     one, other = judge_file(straight, library), judge_file(file, library)
     assert (one.accepted, one.reason) == (other.accepted, other.reason)
-    asked = kept()[name].formula
+    asked = shipped_drives()[name].formula
     (tmp_path / "a").mkdir()
-    rp.export(longer(replace(kept()[name], road=file.road)), to="openscenario", out=tmp_path / "a")
+    rp.export(longer(replace(shipped_drives()[name], road=file.road)), to="openscenario", out=tmp_path / "a")
     (path,) = (tmp_path / "a").glob("*.xosc")
     home = rp.load(straight.set_name)
     assert rp.monitor(asked, path, home).verdict == "true"

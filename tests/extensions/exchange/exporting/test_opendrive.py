@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from extensions.exchange.exporting.kept import TURN, kept, motion, subject, subjects
+from extensions.exchange.exporting.shipped_drives import TURN, motion, shipped_drives, subject, subjects
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.extensions.exchange.commonroad import read_commonroad
 from roadproof.extensions.exchange.export import commonroad, opendrive, openscenario, points
-from roadproof.extensions.exchange.export.subject import MARGIN, Subject, lay_out, span_of
+from roadproof.extensions.exchange.export.subject import MARGIN, ExportSubject, lay_out, span_of
 from roadproof.extensions.traffic.formats.recording import ZONES, Recording
 from roadproof.world.models import load_road, names_of
 from roadproof.world.motion import State, state_at
@@ -29,7 +29,7 @@ Cell = tuple[str, str, str, F, F, F, F]
 ATTRIBUTES = {"driving": "main", "entry": "merge", "exit": "departure"}
 
 
-def root_of(made: Subject) -> Element:
+def root_of(made: ExportSubject) -> Element:
     return ElementTree.fromstring(opendrive.road_file(made))
 
 
@@ -64,7 +64,7 @@ def cells(root: Element) -> list[Cell]:
     return found
 
 
-def expected(made: Subject) -> list[Cell]:
+def expected(made: ExportSubject) -> list[Cell]:
     """The same from the road, cut wherever a lanelet begins or ends."""
     layout = made.layout
     ends = {x for lanelet in made.file.road.lanelets for x in lanelet.s if x is not None}
@@ -190,18 +190,18 @@ def test_the_road_goes_as_far_as_the_drive_and_a_margin() -> None:
     assert span_of([car], F(2)) == (F("-4.5"), F("11.25"))  # foremost at 1.5 s, 10 m at the end
     layout = lay_out(load_road("main-2"), (F("-4.5"), F("11.25")))
     assert (layout.low, layout.high) == (-5 - MARGIN, 12 + MARGIN)
-    assert layout.said == "road main-2, cut to s = -105 m to 112 m"
-    assert root_of(subject()).find("header").get("name") == subject().layout.said  # type: ignore[union-attr]
+    assert layout.cut_note == "road main-2, cut to s = -105 m to 112 m"
+    assert root_of(subject()).find("header").get("name") == subject().layout.cut_note  # type: ignore[union-attr]
 
 
 # --- CommonRoad files: what the format demands, and what comes back of them is what was written -----
 
 
-def commonroad_root(made: Subject) -> Element:
+def commonroad_root(made: ExportSubject) -> Element:
     return ElementTree.fromstring(commonroad.files(made)[f"{made.name}.xml"])
 
 
-def read(made: Subject, folder: Path) -> Recording:
+def read(made: ExportSubject, folder: Path) -> Recording:
     for name, content in commonroad.files(made).items():
         (folder / name).write_bytes(content)
     return read_commonroad(folder / f"{made.name}.xml")
@@ -214,7 +214,7 @@ def occupied(state: State, length: F, width: F, lanelet: Lanelet) -> bool:
     return along and state.d > lanelet.d[0] and state.d - width < lanelet.d[1]
 
 
-def faults(made: Subject, recording: Recording) -> list[str]:
+def faults(made: ExportSubject, recording: Recording) -> list[str]:
     """Where signals, lanes and zones of a recording are not those of the drive at its samples."""
     found = []
     for v, (name, car) in enumerate(made.vehicles.items()):
@@ -240,7 +240,7 @@ def faults(made: Subject, recording: Recording) -> list[str]:
 
 
 @pytest.mark.parametrize("made", subjects(), ids=lambda x: x.name)
-def test_what_is_read_back_is_the_drive(made: Subject, tmp_path: Path) -> None:
+def test_what_is_read_back_is_the_drive(made: ExportSubject, tmp_path: Path) -> None:
     recording = read(made, tmp_path)
     assert not faults(made, recording)
     assert len(recording.lanes) == len(made.file.road.lanes)
@@ -308,7 +308,7 @@ def test_what_lies_apart_is_no_neighbour(tmp_path: Path) -> None:
 # --- OpenSCENARIO files read by what the format says of them, and played against the exact motion ---
 
 
-def openscenario_root(made: Subject) -> Element:
+def openscenario_root(made: ExportSubject) -> Element:
     return ElementTree.fromstring(openscenario.scenario_file(made))
 
 
@@ -353,7 +353,7 @@ def farthest(root: Element, file: DriveFile) -> float:
 
 
 @pytest.mark.parametrize("made", subjects()[::5], ids=lambda x: x.name)
-def test_a_player_of_the_file_is_within_its_bound_of_the_drive(made: Subject) -> None:
+def test_a_player_of_the_file_is_within_its_bound_of_the_drive(made: ExportSubject) -> None:
     root = openscenario_root(made)
     said = re.search(r"within ([0-9.]+) m of the drive", only(root, "FileHeader").get("description", ""))
     assert said is not None
@@ -399,8 +399,10 @@ def test_boxes_are_those_of_the_drive_and_corners_are_as_far_off_as_said() -> No
 
 def test_a_name_that_xml_cannot_hold_is_written_plainly(tmp_path: Path) -> None:
     made = subject(SV=TURN)
-    file = next(iter(kept().values()))
-    odd = Subject("odd", 1, DriveFile(**{**vars(made.file), "formula": "\x01<&>", "values": file.values}))
+    file = next(iter(shipped_drives().values()))
+    odd = ExportSubject(
+        "odd", 1, DriveFile(**{**vars(made.file), "formula": "\x01<&>", "values": file.values})
+    )
     assert only(openscenario_root(odd), "FileHeader").get("description", "").startswith("?<&> (base)")
 
 

@@ -17,14 +17,22 @@ import numpy as np
 import polars
 import pytest
 
-from extensions.exchange.exporting.kept import SMOOTH, TURN, WEAVING, kept, motion, subject, subjects
+from extensions.exchange.exporting.shipped_drives import (
+    SMOOTH,
+    TURN,
+    WEAVING,
+    motion,
+    shipped_drives,
+    subject,
+    subjects,
+)
 from fuzz.held import CALLS
 from planting import plant
 from roadproof.errors import InputError
 from roadproof.extensions.exchange.export import openscenario
 from roadproof.extensions.exchange.export.points import axle_to_centre, centre, heading, rear_axle
 from roadproof.extensions.exchange.export.registry import FORMATS
-from roadproof.extensions.exchange.export.subject import Subject, span_of
+from roadproof.extensions.exchange.export.subject import ExportSubject, span_of
 from roadproof.extensions.exchange.exporting import export
 from roadproof.extensions.traffic.evaluate.one_trace import OneTrace, read_pair, read_samples, sample_drive
 from roadproof.extensions.traffic.formats.large import write_large
@@ -53,29 +61,29 @@ class Read:
     lane: str
 
 
-def written(made: Subject, format_: str, folder: Path) -> Path:
+def written(made: ExportSubject, format_: str, folder: Path) -> Path:
     for name, content in FORMATS[format_](made).items():
         (folder / name).write_bytes(content)
     return folder
 
 
-def by_id(made: Subject) -> str:
+def by_id(made: ExportSubject) -> str:
     """SV is 1 in every format, and the others follow."""
     return ",".join(str(k) for k, _ in enumerate(made.vehicles, 1))
 
 
-def as_csv(made: Subject, folder: Path) -> Read:
+def as_csv(made: ExportSubject, folder: Path) -> Read:
     """As one trace, on the road beside the file."""
     return Read(read_samples(written(made, "csv", folder) / f"{made.name}.csv"), made.file.lanes["L"])
 
 
-def as_csv_recording(made: Subject, folder: Path) -> Read:
+def as_csv_recording(made: ExportSubject, folder: Path) -> Read:
     """As a recording, whose vehicles are numbered."""
     path = written(made, "csv", folder) / f"{made.name}.csv"
     return Read(read_pair(f"{path}:{by_id(made)}"), made.file.lanes["L"])
 
 
-def as_highd(made: Subject, folder: Path) -> Read:
+def as_highd(made: ExportSubject, folder: Path) -> Read:
     """Lanes are called as on the road beside the files, or by laneId, which counts from the upper left."""
     name = f"{made.number:02d}"
     path = written(made, "highd", folder) / f"{name}_tracks.csv"
@@ -86,14 +94,14 @@ def as_highd(made: Subject, folder: Path) -> Read:
     return Read(read, str(4 + [x.lane for x in left].index(made.file.lanes["L"])))
 
 
-def as_commonroad(made: Subject, folder: Path) -> Read:
+def as_commonroad(made: ExportSubject, folder: Path) -> Read:
     """A lane is called by its first lanelet, and lanelets count from 1001, section by section."""
     path = written(made, "commonroad", folder) / f"{made.name}.xml"
     lanes = [x.lane for section in made.layout.sections for x in section.lanelets]
     return Read(read_pair(f"{path}:{by_id(made)}"), str(1001 + lanes.index(made.file.lanes["L"])))
 
 
-READERS: Mapping[str, Callable[[Subject, Path], Read]] = {
+READERS: Mapping[str, Callable[[ExportSubject, Path], Read]] = {
     "csv": as_csv,
     "csv, as a recording": as_csv_recording,
     "highd": as_highd,
@@ -109,14 +117,14 @@ def spans(found: MonitorAnswer) -> list[list[tuple[float, float]]]:
 @cache
 def original(name: str) -> MonitorAnswer:
     """The drive's own samples."""
-    file = kept()[name]
+    file = shipped_drives()[name]
     return monitor(file.scenario or file.formula, file, view="recorded")
 
 
 @pytest.mark.parametrize("format_", READERS)
 @pytest.mark.parametrize("made", subjects(), ids=lambda x: x.name)
 def test_verdicts_and_truth_intervals_are_those_of_the_drive(
-    made: Subject, format_: str, tmp_path: Path
+    made: ExportSubject, format_: str, tmp_path: Path
 ) -> None:
     read = READERS[format_](made, tmp_path)
     found = monitor(made.file.scenario or "", read.trace, of_file(made.file), lanes={"L": read.lane})
@@ -135,7 +143,7 @@ def test_a_drive_with_jerk_is_read_back_as_it_was(format_: str, tmp_path: Path) 
         "SV": given(0, 2.6, 29, along=[(1, 0, -1), (1, -1, 1)]),
         "POV": given(70, 2.8, 28, along=[(1, 0, -4), (2, -4, 0), (1, -4, 4)]),
     }
-    made = Subject("smooth", 1, drive(4, vehicles, load("ext")).file)
+    made = ExportSubject("smooth", 1, drive(4, vehicles, load("ext")).file)
     read = READERS[format_](made, tmp_path)
     ours = monitor(4, made.file, view="recorded")
     found = monitor(4, read.trace, of_file(made.file), lanes={"L": read.lane})
@@ -152,10 +160,10 @@ def test_a_drive_with_jerk_is_read_back_as_it_was(format_: str, tmp_path: Path) 
             assert columns[1] - begins[1] == pytest.approx(columns[0] - begins[0], abs=1e-6), (signal, name)
 
 
-@pytest.mark.parametrize("name", [*kept()][::9])
+@pytest.mark.parametrize("name", [*shipped_drives()][::9])
 def test_samples_are_true_where_dense_time_is(name: str) -> None:
     """Away from the ends of dense intervals, for the parts that speak of one instant."""
-    file = kept()[name]
+    file = shipped_drives()[name]
     dense = {x.name: x.true for x in monitor(file.scenario or "", file).observed.strips}
     compared = 0
     for strip in original(name).observed.strips:
@@ -273,7 +281,13 @@ def worst(vertices: tuple[State, ...], car: Motion) -> float:
 
 @pytest.mark.parametrize(
     "car",
-    [TURN, HARD, SMOOTH, WEAVING, *(m for f in [*kept().values()][::6] for m in f.drive.vehicles.values())],
+    [
+        TURN,
+        HARD,
+        SMOOTH,
+        WEAVING,
+        *(m for f in [*shipped_drives().values()][::6] for m in f.drive.vehicles.values()),
+    ],
 )
 def test_lines_are_within_their_bound_and_a_centimetre_of_the_drive(car: Motion) -> None:
     line = openscenario.polyline_of(car, F(6))
@@ -343,7 +357,7 @@ def test_planted_fault_a_bound_that_forgets_jerk_is_broken(
         return any(worst(line.vertices, car) > line.bound + 1e-12 for car, line in made)
 
     assert not broken()
-    plant(monkeypatch, openscenario, "_part", right, wrong)
+    plant(monkeypatch, openscenario, "_segment", right, wrong)
     assert broken()
 
 
@@ -353,15 +367,15 @@ def test_speeds_accelerations_and_headings_between_vertices_are_within_what_is_s
         states = [state_at(car, F(k, 200)) for k in range(801)]
         assert max(x.v_lon for x in states) <= max(x.v_lon for x in line.vertices)
         assert min(x.v_lon for x in states) >= min(x.v_lon for x in line.vertices)
-        assert min(line.pulls) <= min(x.a_lon for x in states)
-        assert max(x.a_lon for x in states) <= max(line.pulls)
+        assert min(line.accelerations) <= min(x.a_lon for x in states)
+        assert max(x.a_lon for x in states) <= max(line.accelerations)
         turned = max(abs(heading(x) or 0.0) for x in states)
         assert turned <= line.turned <= 1.2 * turned
 
 
 def test_an_acceleration_that_is_reached_only_before_a_jump_counts() -> None:
     car = motion(("2", "0", "0", "6"), (None, "0", "0"))
-    assert max(openscenario.polyline_of(car, F(3)).pulls) == 12
+    assert max(openscenario.polyline_of(car, F(3)).accelerations) == 12
     assert b'maxAcceleration="12"' in openscenario.files(subject(SV=car))["made.xosc"]
 
 
@@ -434,7 +448,7 @@ READ = {"openscenario": "made.xosc", "commonroad": "made.xml", "highd": "01_trac
 DRIVES = [f"scenario-{number:02d}-{name}" for number in (2, 4, 7, 12, 18) for name in ("base", "ext")]
 
 
-def path_of(made: Subject, format_: str, folder: Path) -> Path:
+def path_of(made: ExportSubject, format_: str, folder: Path) -> Path:
     """The exported file, or the same samples as Parquet."""
     for name, content in FORMATS["csv" if format_ == "parquet" else format_](made).items():
         (folder / name).write_bytes(content)
@@ -457,7 +471,7 @@ def test_every_format_is_read_or_has_no_vehicle() -> None:
 @pytest.mark.parametrize("format_", [*READ, "parquet"])
 @pytest.mark.parametrize("drive", DRIVES)
 def test_numbers_are_roles_in_every_format(drive: str, format_: str, tmp_path: Path) -> None:
-    made = Subject("made", 1, kept()[drive])
+    made = ExportSubject("made", 1, shipped_drives()[drive])
     path = path_of(made, format_, tmp_path)
     names = roles(len(made.vehicles))
     assert tuple(made.vehicles) == names
@@ -482,7 +496,7 @@ def test_numbers_are_roles_in_every_format(drive: str, format_: str, tmp_path: P
     assert "false" in {verdict(order) for order in others}
 
 
-def lane_of(made: Subject, name: str) -> str:
+def lane_of(made: ExportSubject, name: str) -> str:
     """The lane of the centre of a vehicle's box at time 0."""
     car = made.vehicles[name]
     s, d = car.s - car.length / 2, car.d - car.width / 2
@@ -517,7 +531,7 @@ def test_vehicles_of_any_name_have_the_same_numbers_in_every_format(
 @pytest.mark.parametrize("drive", ["scenario-04-base", "scenario-02-base"])
 def test_a_converted_recording_has_the_same_numbers(drive: str, tmp_path: Path) -> None:
     """Large files are numbered by a reader of their own, in pieces."""
-    made = Subject("made", 1, kept()[drive])
+    made = ExportSubject("made", 1, shipped_drives()[drive])
     head = write_large(path_of(made, "csv", tmp_path), tmp_path, {}, "")
     recording = find_source(head).read()
     assert recording.vehicle_id.tolist() == [*made.ids.values()]
@@ -530,7 +544,7 @@ def test_a_converted_recording_has_the_same_numbers(drive: str, tmp_path: Path) 
 
 def test_files_written_by_the_command_have_the_roles(tmp_path: Path) -> None:
     """`export` itself, with all formats at once, for a drive whose roles cannot be exchanged."""
-    file = kept()["scenario-04-base"]
+    file = shipped_drives()["scenario-04-base"]
     export([file], to=[*READ], out=tmp_path)
     seen = {}
     for format_ in READ:

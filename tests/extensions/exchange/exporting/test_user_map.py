@@ -14,8 +14,8 @@ from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.extensions.exchange.export import commonroad as made
 from roadproof.extensions.exchange.export import opendrive
-from roadproof.extensions.exchange.export.registry import numbers_in
-from roadproof.extensions.exchange.export.subject import Subject
+from roadproof.extensions.exchange.export.registry import vehicle_ids_in
+from roadproof.extensions.exchange.export.subject import ExportSubject
 from roadproof.world.drive import Drive, motion_of
 from roadproof.world.models import load_road
 
@@ -50,7 +50,7 @@ def file_on(path: Path) -> DriveFile:
 
 def test_the_lanelets_are_those_of_the_map(tmp_path: Path) -> None:
     path = map_in(tmp_path)
-    subject = Subject("one", 1, file_on(path))
+    subject = ExportSubject("one", 1, file_on(path))
     root = ElementTree.fromstring(made.files(subject)["one.xml"])
     theirs = ElementTree.parse(path).getroot()
     for tag in ("lanelet", "trafficSign", "location"):
@@ -61,8 +61,8 @@ def test_the_lanelets_are_those_of_the_map(tmp_path: Path) -> None:
         assert ours == wanted
         assert ours
     assert [x.get("id") for x in root.iter("dynamicObstacle")] == ["2001", "2002"]
-    assert numbers_in("commonroad", subject) == {"SV": 2001, "POV": 2002}
-    assert numbers_in("highd", subject) == {"SV": 1, "POV": 2}
+    assert vehicle_ids_in("commonroad", subject) == {"SV": 2001, "POV": 2002}
+    assert vehicle_ids_in("highd", subject) == {"SV": 1, "POV": 2}
     ids = [x.get("id") for x in root if x.get("id")]
     assert len(ids) == len({*ids})
 
@@ -86,14 +86,14 @@ def test_zones_that_are_said_beside_the_map_come_with_it(tmp_path: Path) -> None
     path = map_in(tmp_path)
     (tmp_path / "mine_zones.toml").write_text('[[lanelet]]\nid = "32"\nattribute = "main"\n')
     file = replace(file_on(map_in(tmp_path, "other")), road=load_road(path))
-    exported = made.files(Subject("one", 1, file))
+    exported = made.files(ExportSubject("one", 1, file))
     assert exported["one_zones.toml"] == (tmp_path / "mine_zones.toml").read_bytes()
-    assert "other_zones.toml" not in made.files(Subject("one", 1, file_on(tmp_path / "other.xml")))
+    assert "other_zones.toml" not in made.files(ExportSubject("one", 1, file_on(tmp_path / "other.xml")))
 
 
 def test_an_older_map_gives_lanelets_of_the_road(tmp_path: Path) -> None:
     """Other tools read files of 2020a, whose lanelets are said otherwise."""
-    exported = made.files(Subject("one", 1, file_on(map_in(tmp_path, version="2018b"))))
+    exported = made.files(ExportSubject("one", 1, file_on(map_in(tmp_path, version="2018b"))))
     root = ElementTree.fromstring(exported["one.xml"])
     assert {x.get("id") for x in root.iter("dynamicObstacle")} == {"1", "2"}
     assert min(int(x.get("id", "")) for x in root.iter("lanelet")) == made.FIRST_LANELET
@@ -101,7 +101,7 @@ def test_an_older_map_gives_lanelets_of_the_road(tmp_path: Path) -> None:
 
 def test_a_map_that_was_changed_is_refused(tmp_path: Path) -> None:
     path = map_in(tmp_path)
-    subject = Subject("one", 1, file_on(path))
+    subject = ExportSubject("one", 1, file_on(path))
     path.write_text(commonroad(RAMP, 1 / 300))
     with pytest.raises(InputError, match="the map has another road than drive one; find the drive again"):
         made.files(subject)
@@ -113,7 +113,7 @@ def test_an_opendrive_file_of_lanelets_has_no_steps_where_lanes_go_on(tmp_path: 
     path = tmp_path / "mine.xml"
     path.write_text(commonroad([*shifted], 1 / 400))
     file = file_on(path)
-    (made,) = opendrive.files(Subject("one", 1, file)).values()
+    (made,) = opendrive.files(ExportSubject("one", 1, file)).values()
     (tmp_path / "one.xodr").write_bytes(made)
     sections = list(ElementTree.fromstring(made).iter("laneSection"))
     assert len(sections) == 3

@@ -12,7 +12,7 @@ import numpy as np
 from extensions.exchange.exporting.integration import curvature_at, integrated
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.world.drive import Motion
-from roadproof.world.motion import State, starts_of, state_at
+from roadproof.world.motion import State, piece_starts, state_at
 from roadproof.world.road import Lanelet
 
 RATE = 25
@@ -111,7 +111,7 @@ def _limit(file: DriveFile) -> float:
     """m/s: 130 km/h, or the next ten km/h above the fastest vehicle; speeds are greatest at changes."""
     fastest = Fraction(0)
     for car in file.drive.vehicles.values():
-        times = {file.horizon, *(x.time for x in starts_of(car) if x.time < file.horizon)}
+        times = {file.horizon, *(x.time for x in piece_starts(car) if x.time < file.horizon)}
         fastest = max(fastest, *(state_at(car, time).v_lon for time in times))
     return max(130, 10 * math.ceil(fastest * Fraction(36, 100))) / 3.6
 
@@ -183,4 +183,4 @@ def _lanes(file: DriveFile, state: State, car: Motion) -> set[str]:
 def _steady(car: Motion, step: int) -> bool:
     """Whether a vehicle has one acceleration from the sample before to the one after."""
     begin, end = Fraction(step - 1, RATE), Fraction(step + 1, RATE)
-    return not any(begin < x.time < end for x in starts_of(car))
+    return not any(begin < x.time < end for x in piece_starts(car))

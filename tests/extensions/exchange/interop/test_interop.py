@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from extensions.exchange.exporting.kept import kept, motion, subject, subjects
+from extensions.exchange.exporting.shipped_drives import motion, shipped_drives, subject, subjects
 from extensions.exchange.exporting.test_opendrive import boxes
 from extensions.exchange.exporting.test_opendrive import openscenario_root as root_of
 from extensions.exchange.interop.clients.asam_report import issues_in
@@ -75,7 +75,7 @@ def test_metrics_by_hand() -> None:
 
 def test_expected_boxes_are_those_of_the_file() -> None:
     """By two ways: what clients are told, and a player of the file."""
-    file = kept()["scenario-01-base"]
+    file = shipped_drives()["scenario-01-base"]
     (made,) = [x for x in subjects() if x.name == "scenario-01-base"]
     for name, told in expected(file)["vehicles"].items():
         played = boxes(root_of(made), name, told["times"])
@@ -86,4 +86,4 @@ def test_expected_boxes_are_those_of_the_file() -> None:
 def test_scripts_are_there_and_speak_json() -> None:
     folder = Path(__file__).parent / "clients"
     assert {x.script for x in clients()} == {x.name for x in folder.glob("*.py")} - {"asam_report.py"}
-    assert json.loads(json.dumps(expected(kept()["scenario-02-base"])))["metrics"]
+    assert json.loads(json.dumps(expected(shipped_drives()["scenario-02-base"])))["metrics"]

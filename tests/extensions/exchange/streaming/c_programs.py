@@ -55,8 +55,8 @@ static void run_{label}(const {name}_sample *samples, uint32_t count)
 def _main(source: CSource) -> str:
     """A program that reads traces, and for each formula and sample writes what step and finish say."""
     name = source.name
-    rounds = [_ROUND.format(name=name, label=x.label, big=x.label.upper()) for x in source.monitors]
-    calls = "".join(f"        run_{x.label}(samples, count);\n" for x in source.monitors)
+    rounds = [_ROUND.format(name=name, label=x.identifier, big=x.identifier.upper()) for x in source.monitors]
+    calls = "".join(f"        run_{x.identifier}(samples, count);\n" for x in source.monitors)
     return (
         _HEAD.format(name=name)
         + "".join(rounds)
@@ -101,7 +101,7 @@ def samples_of(source: CSource, batch: Batch, trace: int) -> np.ndarray:
         match leaf:
             case t.Size(name, vehicle):
                 made[field.name] = batch.sizes.get((name, vehicle), np.zeros(batch.traces))[trace]
-            case t.Signal(name, vehicle) | t.Own(name, vehicle):
+            case t.Signal(name, vehicle) | t.CustomSignal(name, vehicle):
                 columns = batch.signals.get((name, vehicle))
                 made[field.name] = 0 if columns is None else columns[:length, trace]
             case _:
@@ -120,11 +120,11 @@ def answers(source: CSource, program: Path, traces: Sequence[np.ndarray]) -> dic
     ran = subprocess.run([str(program)], input=fed, capture_output=True)
     assert ran.returncode == 0, ran.stderr.decode()
     data, at, longest = np.frombuffer(ran.stdout, dtype=np.uint8), 0, max(map(len, traces))
-    found = {x.label: np.full((longest, 2 + x.rest, len(traces)), 99) for x in source.monitors}
+    found = {x.identifier: np.full((longest, 2 + x.rest, len(traces)), 99) for x in source.monitors}
     for k, samples in enumerate(traces):
         for monitor in source.monitors:
             size = (2 + monitor.rest) * len(samples)
-            found[monitor.label][: len(samples), :, k] = data[at : at + size].reshape(len(samples), -1)
+            found[monitor.identifier][: len(samples), :, k] = data[at : at + size].reshape(len(samples), -1)
             at += size
     assert at == len(data)
     return found
@@ -145,7 +145,7 @@ def differences(source: CSource, program: Path, batch: Batch) -> Iterator[str]:
     """Where C and the monitor part: at every sample of every trace, for step and for finish."""
     found = said(source, program, batch)
     for monitor in source.monitors:
-        yield from parted(monitor, batch, found[monitor.label])
+        yield from parted(monitor, batch, found[monitor.identifier])
 
 
 def parted(monitor: StreamMonitor, batch: Batch, found: np.ndarray) -> Iterator[str]:

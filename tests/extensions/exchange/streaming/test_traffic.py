@@ -54,11 +54,11 @@ def test_all_witnesses(set_name: str, tmp_path: Path, monkeypatch: pytest.Monkey
     program, with_flags = build(source, tmp_path / "bound", STRICT), build(flags, tmp_path / "flags", STRICT)
     for monitor, free, (n, file) in zip(source.monitors, flags.monitors, drives.items(), strict=True):
         batch = sample_drive(file.drive, file.road, file.horizon, DT, "drive").batch
-        found = said(source, program, batch)[monitor.label]
+        found = said(source, program, batch)[monitor.identifier]
         assert list(parted(monitor, batch, found)) == []
         assert found[-1, 2, 0] == TRUE  # a witness, with samples, too
         leaves = {x: bind(x, file.road, file.lanes, {}) for x in free.plan.leaves}
         truth = compile(leaves).evaluate(batch, at="all").answers
         given = {x: answer.true for x, answer in truth.items()}
-        same = said(flags, with_flags, replace(batch, given=given))[free.label]
+        same = said(flags, with_flags, replace(batch, given=given))[free.identifier]
         assert np.array_equal(same, found), n

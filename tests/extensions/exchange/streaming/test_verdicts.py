@@ -114,7 +114,7 @@ def _batch(values: Mapping[str, float]) -> Batch:
 
 @pytest.fixture(scope="module")
 def asked(tmp_path_factory: pytest.TempPathFactory) -> tuple[CSource, Path]:
-    """Formulas with own signals, a kind, a quotient by a size, an inverse and a maximum."""
+    """Formulas with custom signals, a kind, a quotient by a size, an inverse and a maximum."""
     home = rp.load(specs=[OWN])
     formulas = (
         "stops(SV)",
@@ -157,6 +157,6 @@ def test_wrong_samples_are_rejected_for_good(
         compile({"it": monitor.plan.formula}).evaluate(_batch({name: value, "s_SV": 1.0} | {name: value}))
     samples = samples_of(source, _batch({"s_SV": 1.0}), 0)
     samples[name][2] = value
-    found = answers(source, program, [samples])[monitor.label][:, 0, 0].tolist()
+    found = answers(source, program, [samples])[monitor.identifier][:, 0, 0].tolist()
     assert UNKNOWN not in found[:2]
     assert found[2:] == [UNKNOWN, UNKNOWN]

@@ -11,8 +11,8 @@ import roadproof as rp
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import RejectedError
-from roadproof.extensions.pages.atlas.notation import shown
-from roadproof.extensions.pages.atlas.pictures import _draw, _Job
+from roadproof.extensions.pages.atlas.notation import text_as_html
+from roadproof.extensions.pages.atlas.pictures import _draw, _PictureJob
 from roadproof.extensions.pages.atlas.traffic import frequencies
 from roadproof.extensions.pages.miniature import miniature, small_scene
 from roadproof.frontends.cli.main import main
@@ -86,7 +86,7 @@ def test_pairs_and_claims_are_as_in_the_answers(made):
     assert re.search(r'<li id="with-1">\s*<span class="verdict-word none">· IMPOSSIBLE', text)
     for claim in rp.prove("4", jobs=1).answers:
         assert claim.task.id in text
-        assert shown(claim.task.claim) in text
+        assert text_as_html(claim.task.claim) in text
 
 
 def test_a_scenario_s_page_has_its_words_formula_and_definitions(made):
@@ -115,17 +115,17 @@ def test_a_drive_that_the_judge_rejects_is_not_drawn(made, tmp_path):
     content = json.loads((made.folder / "evidence/drives-smooth/scenario-04-base.json").read_text())
     path.write_text(json.dumps({**content, "formula": f"not {content['formula']}"}))
     with pytest.raises(RejectedError, match="does not hold on the drive"):
-        _draw(rp.load().library, _Job(path, "m0", ""))
+        _draw(rp.load().library, _PictureJob(path, "m0", ""))
 
 
 def test_formulas_are_in_the_notation_of_the_paper():
-    assert shown("G[0, minSafe] not p(a_1)") == (
+    assert text_as_html("G[0, minSafe] not p(a_1)") == (
         "𝓖<sub>[0, <i>minSafe</i>]</sub> ¬ <i>p</i>(<i>a</i><sub>1</sub>)"
     )
-    assert shown("rho <= 2 -> q@ext", {"q@ext"}, "d-") == (
+    assert text_as_html("rho <= 2 -> q@ext", {"q@ext"}, "d-") == (
         '<i>ρ</i> ≤ 2 ⇒ <a href="#d-q@ext"><i>q</i><sup>ext</sup></a>'
     )
-    assert shown("atLane(SV, main-1) < 3") == "<i>atLane</i>(<i>SV</i>, <i>main-1</i>) &lt; 3"
+    assert text_as_html("atLane(SV, main-1) < 3") == "<i>atLane</i>(<i>SV</i>, <i>main-1</i>) &lt; 3"
 
 
 def test_frequencies_are_those_of_the_table():

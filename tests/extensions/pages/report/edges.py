@@ -4,12 +4,12 @@ from typing import Any
 
 from matplotlib.text import Text
 
-from roadproof.frontends.report.figures import settle
+from roadproof.frontends.report.figures import fix_layout
 
 
 def cut_off(figure: Any) -> list[str]:
     """The texts of a figure that reach beyond its edges."""
-    settle(figure)
+    fix_layout(figure)
     figure.draw_without_rendering()
     renderer = figure.canvas.get_renderer()
     whole = figure.bbox

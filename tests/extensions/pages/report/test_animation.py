@@ -17,7 +17,7 @@ from roadproof.errors import MissingSolverError
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.extensions.pages.animation import draw_animation
 from roadproof.extensions.pages.frames import MOST_FRAMES, draw_film
-from roadproof.extensions.pages.scene import Scene
+from roadproof.extensions.pages.scene import AnimationScene
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.drive import COLOURS, DANGER, SHADES
 from roadproof.library.loading import bundled_library
@@ -46,7 +46,7 @@ def frames_of(file: DriveFile) -> list[tuple[F, Image.Image]]:
     return [*frames, (since, frames[-1][1])]
 
 
-def box_of(frame: Image.Image, colour: str, scene: Scene) -> tuple[float, float]:
+def box_of(frame: Image.Image, colour: str, scene: AnimationScene) -> tuple[float, float]:
     """Left edge and middle of the height of a colour on the road, in m from SV's front and across."""
     rgb = tuple(bytes.fromhex(colour[1:]))
     left, top, width, height = scene.pixels((*scene.window, *scene.across))
@@ -78,7 +78,7 @@ def test_a_gif_file_of_six_seconds_is_small(file: DriveFile) -> None:
 
 @pytest.mark.parametrize("k", [0, 25, 50, 72])
 def test_frames_show_vehicles_where_the_drive_has_them(k: int) -> None:
-    scene = Scene(FILE, LIBRARY)
+    scene = AnimationScene(FILE, LIBRARY)
     time = F(k, 12)
     frame = frames_of(FILE)[k][1]
     sv, pov = (FILE.drive.vehicles[name] for name in ("SV", "POV"))
@@ -92,7 +92,7 @@ def test_frames_show_vehicles_where_the_drive_has_them(k: int) -> None:
 
 def test_the_area_of_a_frame_is_red_while_the_vehicle_is_in_it() -> None:
     file = file_of(None, "F danger(SV, POV)", **CROSSING)
-    [area] = Scene(file, LIBRARY, grain=F(1, 12)).areas()
+    [area] = AnimationScene(file, LIBRARY, grain=F(1, 12)).areas()
     seen = set()
     for (_, frame), (left, top, *_), red in zip(frames_of(file), area.boxes, area.red, strict=False):
         shown = frame.getpixel((int(left + 3), int(top + 3)))

@@ -19,11 +19,11 @@ from roadproof.extensions.pages.animation import draw_animation
 from roadproof.extensions.pages.bent_scene import BentScene, scene_of
 from roadproof.extensions.pages.frames import draw_film
 from roadproof.extensions.pages.miniature import miniature, small_scene
-from roadproof.extensions.pages.scene import Polygon, Scene, Strokes
+from roadproof.extensions.pages.scene import AnimationScene, PolygonShape, StrokesShape
 from roadproof.extensions.pages.viewer_data import viewer_data
 from roadproof.extensions.pages.viewer_page import viewer_modules
 from roadproof.frontends.report.drive import COLOURS, draw_drive
-from roadproof.frontends.report.plane import View
+from roadproof.frontends.report.plane import RoadView
 from roadproof.library.loading import bundled_library
 from roadproof.world.curves import Spiral
 from roadproof.world.drive import Drive, motion_of
@@ -60,7 +60,7 @@ def on_arc(s: float, d: float) -> tuple[float, float]:
 
 
 def test_a_view_shows_places_of_an_arc() -> None:
-    view = View(ARC, 500.0, 20.0, -3.0)
+    view = RoadView(ARC, 500.0, 20.0, -3.0)
     origin, ahead = on_arc(520, -3), on_arc(520.001, -3)
     heading = math.atan2(ahead[1] - origin[1], ahead[0] - origin[0])
     for s, d in ((20.0, -3.0), (-40.0, 5.0), (90.0, -9.0)):
@@ -72,7 +72,7 @@ def test_a_view_shows_places_of_an_arc() -> None:
 
 
 def test_vehicles_are_rectangles_in_the_direction_of_the_road() -> None:
-    view = View(ARC, 500.0, 0.0, 0.0)
+    view = RoadView(ARC, 500.0, 0.0, 0.0)
     corners = view.vehicle((60.0, 64.5, -4.0, -2.2))
     assert math.dist(corners[0], corners[1]) == pytest.approx(4.5)
     assert math.dist(corners[1], corners[2]) == pytest.approx(1.8)
@@ -113,7 +113,7 @@ def test_lanes_move_and_turn_to_where_each_view_sees_them() -> None:
     scene, root = drawn(file_of(ARC))
     lanes = scene.pavement()
     assert lanes.pivot is not None
-    area = next(x for x in lanes.shapes if isinstance(x, Polygon))
+    area = next(x for x in lanes.shapes if isinstance(x, PolygonShape))
     begin = scene.road.pieces[0]
     k = len(scene.times) - 1
     turned = math.radians(lanes.shifts[k].turned)
@@ -143,7 +143,7 @@ def test_all_that_moves_stays_in_the_picture() -> None:
             for x, y in (p for points in getattr(shape, "outlines", ()) for p in points):
                 assert left <= x <= left + width
                 assert top <= y <= top + height
-        assert all(isinstance(x, Polygon | Strokes) for x in scene.pavement().shapes)
+        assert all(isinstance(x, PolygonShape | StrokesShape) for x in scene.pavement().shapes)
 
 
 def test_frames_show_what_the_moving_picture_shows() -> None:
@@ -175,7 +175,7 @@ def test_other_pictures_say_what_bends_do_to_lengths() -> None:
 
 def test_a_straight_road_has_no_line_in_the_viewer() -> None:
     straight = replace(file_of(ARC), road=replace(ROAD, line=None, map=None))
-    assert type(scene_of(straight, LIBRARY)) is Scene
+    assert type(scene_of(straight, LIBRARY)) is AnimationScene
     assert "line" not in viewer_data(straight, LIBRARY).as_json()["drive"]["road"]
     road = viewer_data(file_of(ARC), LIBRARY).as_json()["drive"]["road"]
     assert road["error"] == pytest.approx([2.75, 7.5 * 1600 / 400])
@@ -200,6 +200,6 @@ def test_the_projection_of_the_browser_is_that_of_python(line: ReferenceLine, tm
     )
     said = subprocess.run(["node", str(tmp_path / "ask.mjs")], capture_output=True, text=True, check=True)
     window, across, origin, found = json.loads(said.stdout)
-    view = View(line, origin, sum(window) / 2, sum(across) / 2)
+    view = RoadView(line, origin, sum(window) / 2, sum(across) / 2)
     for place, point in zip(asked, found, strict=True):
         assert point == pytest.approx(view.at(*place), abs=0.01)

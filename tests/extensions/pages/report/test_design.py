@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from roadproof.extensions.pages.page.templates import page, style_without_scripts
-from roadproof.extensions.pages.studio.pages import served
+from roadproof.extensions.pages.studio.pages import static_files
 from roadproof.extensions.pages.viewer_page import design, viewer_page
 
 ROOT = Path(__file__).parents[4]
@@ -95,7 +95,7 @@ def test_each_colour_has_a_light_and_a_dark_value():
 
 
 def test_each_page_has_the_design_and_knows_every_token_that_it_uses():
-    studio = "".join(x.text for name, x in served().items() if name.endswith(".css"))
+    studio = "".join(x.text for name, x in static_files().items() if name.endswith(".css"))
     atlas = style_without_scripts() + (PAGES / "atlas/atlas.css").read_text("utf-8")
     report = page("", "", [], [])
     for text in (report, atlas, studio, viewer_page([], "")):

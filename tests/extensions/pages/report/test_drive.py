@@ -16,7 +16,8 @@ from extensions.pages.report.edges import cut_off
 from roadproof.evidence.drive_file import DriveFile, load_drive, read_drive
 from roadproof.evidence.judged import judge_file
 from roadproof.extensions.pages.moving import draw_moving
-from roadproof.extensions.pages.scene import Scene
+from roadproof.extensions.pages.places import nearest, places_of
+from roadproof.extensions.pages.scene import AnimationScene
 from roadproof.extensions.pages.viewer_data import ShownFormula, viewer_data
 from roadproof.extensions.pages.viewer_page import json_in_html, viewer_modules, viewer_page, viewer_style
 from roadproof.extensions.pages.viewer_recorded import recorded_data
@@ -37,11 +38,11 @@ from roadproof.frontends.report.drive_data import (
     vehicles_of,
     window_of,
 )
+from roadproof.frontends.report.figures import fix_layout
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library, load_library
 from roadproof.library.specification import Source
-from roadproof.library.uses import nearest, places_of
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
 from roadproof.world.motion import state_at
@@ -218,6 +219,16 @@ def test_nothing_is_cut_off() -> None:
     assert cut_off(draw_drive(file_of(), LIBRARY)) == []
 
 
+def test_a_vehicle_far_beside_the_road_takes_no_room_from_it() -> None:
+    usual = draw_drive(file_of(), LIBRARY)
+    figure = draw_drive(file_of(SV=driving(0, 30), POV=driving(105, 20, F(3), F(6))), LIBRARY)
+    for one in (usual, figure):
+        fix_layout(one)
+    for road, as_usual in zip(figure.axes[:SNAPSHOTS], usual.axes[:SNAPSHOTS], strict=True):
+        assert road.get_position().height == pytest.approx(as_usual.get_position().height, rel=0.05)
+    assert [x.get_text() for x in figure.axes[SNAPSHOTS - 1].texts] == ["SV"]
+
+
 def test_a_formula_is_its_own_title() -> None:
     file = file_of(None, "F danger(SV, POV)")
     assert draw_drive(file, LIBRARY).get_suptitle().splitlines()[0] == "F danger(SV, POV)"
@@ -285,7 +296,7 @@ def red_at(area: ElementTree.Element, times: list[F]) -> list[bool]:
 @pytest.mark.parametrize("name", DRIVES)
 def test_an_area_is_red_exactly_while_the_vehicle_is_in_it(name: str) -> None:
     file = DRIVES[name]
-    scene = Scene(file, LIBRARY)
+    scene = AnimationScene(file, LIBRARY)
     shapes = rectangles(file)
     areas = [x for x in shapes if x.get("fill-opacity")]
     others = vehicles_of(file)[1:]
@@ -302,7 +313,7 @@ def test_an_area_is_red_exactly_while_the_vehicle_is_in_it(name: str) -> None:
 
 @pytest.mark.parametrize("name", DRIVES)
 def test_danger_is_red_for_as_long_as_it_must_last(name: str) -> None:
-    scene = Scene(DRIVES[name], LIBRARY)
+    scene = AnimationScene(DRIVES[name], LIBRARY)
     areas = [x for x in rectangles(scene.file) if x.get("fill-opacity")]
     least = LIBRARY.parameters["minDanger"].value
     for other, area in zip(vehicles_of(scene.file)[1:], areas, strict=True):
@@ -318,7 +329,7 @@ def test_danger_is_red_for_as_long_as_it_must_last(name: str) -> None:
 
 
 def test_vehicles_stand_where_the_drive_has_them() -> None:
-    scene = Scene(DRIVES["ahead"], LIBRARY)
+    scene = AnimationScene(DRIVES["ahead"], LIBRARY)
     shapes = rectangles(DRIVES["ahead"])
     sv, pov = (drawn(shapes, scene.colours[name]) for name in ("SV", "POV"))
     ahead = [b[0] - a[0] for a, b in zip(*(at_instants(x, 61) for x in (sv, pov)), strict=True)]

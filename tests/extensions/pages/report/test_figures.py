@@ -13,26 +13,26 @@ from typing import Any
 import pytest
 
 from extensions.pages.report.edges import cut_off
-from roadproof.engines.search.outcome import Search
+from roadproof.engines.setting import Search
 from roadproof.errors import InputError
 from roadproof.extensions.surveys.classify.cells import Cell
 from roadproof.extensions.surveys.classify.classes import Class
-from roadproof.extensions.surveys.classify.data import Doubt
-from roadproof.extensions.surveys.classify.drives import Example
+from roadproof.extensions.surveys.classify.data import UndecidedPart
+from roadproof.extensions.surveys.classify.drives import ClassExample
 from roadproof.extensions.surveys.classify.question import ClassesView
 from roadproof.extensions.surveys.classify.traffic_shares import Shares
-from roadproof.extensions.surveys.explore.asking import Explorable, Variable
-from roadproof.extensions.surveys.explore.values import Boundary, ExplorationResult
+from roadproof.extensions.surveys.explore.explorable import Explorable, SweepVariable
+from roadproof.extensions.surveys.explore.values import ExplorationResult, SweepBoundary
 from roadproof.extensions.surveys.extremes.extreme import Extreme
 from roadproof.extensions.surveys.extremes.measure import read_measure
 from roadproof.extensions.surveys.extremes.points import PointFinding
 from roadproof.extensions.surveys.report.classify import as_table, draw_classes, summary
 from roadproof.extensions.surveys.report.explore import as_text, draw_exploration, show
-from roadproof.extensions.traffic.evaluate.questions import Settings, default_settings
+from roadproof.extensions.traffic.evaluate.questions import EvaluationSettings, default_settings
 from roadproof.extensions.traffic.evaluate.totals import Totals, begin_totals
 from roadproof.extensions.traffic.report.figures import draw_figures, write_report
 from roadproof.extensions.traffic.report.research_questions import answer_questions
-from roadproof.extensions.traffic.report.tables import LOOKS, Table, as_csv, as_latex, as_markdown
+from roadproof.extensions.traffic.report.tables import LOOKS, ReportTable, as_csv, as_latex, as_markdown
 from roadproof.extensions.traffic.report.tables import as_text as table_text
 from roadproof.extensions.traffic.report.traffic import (
     COMPARISON,
@@ -45,17 +45,17 @@ from roadproof.extensions.traffic.report.traffic import (
     percent,
     results_tables,
 )
+from roadproof.extensions.traffic.scenario_parts import COMPARISON as DETECTORS
 from roadproof.frontends.report.figures import (
     as_bytes,
     count_axis,
+    fix_layout,
     legend_beside,
     make_figure,
     name_rows,
-    settle,
 )
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_query
-from roadproof.library.scenarios import COMPARISON as DETECTORS
 from roadproof.library.words import Words
 from roadproof.verdict import Verdict
 
@@ -76,7 +76,7 @@ def test_nothing_is_cut_off() -> None:
 
 def test_what_is_cut_off_is_noticed() -> None:
     figure = an_example()
-    settle(figure)
+    fix_layout(figure)
     figure.axes[0].text(0.9, 1, "far too long for what is left " * 3)
     assert cut_off(figure) == ["far too long for what is left " * 3]
 
@@ -95,12 +95,12 @@ def test_the_same_picture_is_the_same_file() -> None:
 WORDS = {4: Words(4, "slow ahead", "main road"), 8: Words(8, "slow ahead, leaving", "main road")}
 
 
-def one(happens: tuple[int, ...], place: str | None, verdict: Verdict = Verdict.WITNESSED) -> Example:
+def one(happens: tuple[int, ...], place: str | None, verdict: Verdict = Verdict.WITNESSED) -> ClassExample:
     what = "_".join(map(str, happens))
     name = f"class_{what}" if place is None else f"class_{what}_{place}"
     cell = Cell(happens, happens, ())
     reason = "" if verdict is Verdict.WITNESSED else "none was found"
-    return Example(
+    return ClassExample(
         Class(name, ("SV", "POV"), happens, cell, None, place, f"what {what} is"),
         verdict=verdict,
         reason=reason,
@@ -134,7 +134,7 @@ def test_without_shares_there_are_none() -> None:
 def test_doubts_are_told_and_traces_that_are_shown_twice() -> None:
     shares = shares_of(class_4=10)
     shares.repeated = 5
-    doubts = (Doubt(about="what there is", reason="lost"),)
+    doubts = (UndecidedPart(about="what there is", reason="lost"),)
     found = ClassesView((one((4,), None, Verdict.UNKNOWN),), (), doubts=doubts)
     assert [*summary(found, shares)] == [
         "1 class: 1 UNKNOWN",
@@ -167,7 +167,7 @@ def test_the_picture_names_scenarios_and_colours_and_counts_in_whole_numbers(
 
 BASE = bundled_library().select("base")
 QUERY = read_query(BASE, "4")[1]
-KNOB = Variable("minSafe", "s", F(0), F(3))
+KNOB = SweepVariable("minSafe", "s", F(0), F(3))
 ASKED = Explorable(Search(BASE, QUERY, scenario=4), (KNOB,), 4)
 MEASURE = read_measure(BASE, "least", "v_lon(SV)")
 
@@ -183,7 +183,7 @@ def exploration(**changed: Any) -> ExplorationResult:
         finding("2", Verdict.UNKNOWN, "no time"),
         finding("3", Verdict.NONE_WITHIN, "no drive on main-2"),
     )
-    bracket = Boundary(finding("3/2", Verdict.WITNESSED), values[2], values[3])
+    bracket = SweepBoundary(finding("3/2", Verdict.WITNESSED), values[2], values[3])
     return replace(ExplorationResult(values, (bracket,), (), 5, 1), **changed)
 
 
@@ -205,7 +205,7 @@ def test_a_strip_and_both_sides_of_its_boundary() -> None:
 def test_a_gap_inside_is_said() -> None:
     held, missed = Verdict.WITNESSED, finding("1", Verdict.UNKNOWN, "r")
     values = (finding("0", held), missed, finding("2", held))
-    boundaries = tuple(Boundary(x, missed, None) for x in (values[0], values[2]))
+    boundaries = tuple(SweepBoundary(x, missed, None) for x in (values[0], values[2]))
     text = as_text(ASKED, exploration(findings=values, boundaries=boundaries))
     assert "a gap beside 0 s; at 1 s UNKNOWN [1]" in text
     assert "a gap beside 2 s; at 1 s UNKNOWN [1]" in text
@@ -218,11 +218,14 @@ def test_of_many_reasons_only_some_are_printed() -> None:
     assert "reason 2" not in text
 
 
-def test_a_map_has_the_first_knob_across() -> None:
-    knobs = tuple(Variable(name, "s", F(0), F(1)) for name in ("a", "b"))
+def test_a_map_has_the_first_variable_across() -> None:
+    variables = tuple(SweepVariable(name, "s", F(0), F(1)) for name in ("a", "b"))
     verdicts = {"0 0": "WITNESSED", "0 1": "UNKNOWN", "1 0": "IMPOSSIBLE", "1 1": "NONE-WITHIN"}
     values = tuple(finding(at, Verdict(verdict), verdict) for at, verdict in verdicts.items())
-    asked, explored = replace(ASKED, knobs=knobs, steps=2), exploration(findings=values, boundaries=())
+    asked, explored = (
+        replace(ASKED, variables=variables, steps=2),
+        exploration(findings=values, boundaries=()),
+    )
     lines = as_text(asked, explored).splitlines()
     assert lines[1:5] == ["  b (s)", "  1 | ? -", "  0 | # .", "      0 … 1  a (s)"]
     assert as_bytes(draw_exploration(asked, explored))["png"].startswith(b"\x89PNG")
@@ -233,13 +236,13 @@ def test_extremes_name_both_sides() -> None:
     extreme = Extreme(MEASURE, (), best, missed, missed, 3)
 
     def told(extreme: Extreme) -> str:
-        return as_text(replace(ASKED, knobs=()), ExplorationResult(extremes=(extreme,)))
+        return as_text(replace(ASKED, variables=()), ExplorationResult(extremes=(extreme,)))
 
     text = "  least v_lon(SV) at the start: 0.041 m/s on a judged drive; at 0 m/s IMPOSSIBLE [1]"
     assert text in told(extreme)
-    nothing = replace(extreme, best=None, missed=replace(missed, at=()))
+    nothing = replace(extreme, best=None, outside=replace(missed, at=()))
     assert "  least v_lon(SV) at the start: no drive: IMPOSSIBLE [1]" in told(nothing)
-    endless = replace(extreme, endless=True, missed=None, surely=None)
+    endless = replace(extreme, endless=True, outside=None, excluded=None)
     assert "no end; the judged drive goes past 0.041 m/s" in told(endless)
 
 
@@ -258,7 +261,7 @@ def test_values_are_shown_in_decimals() -> None:
 
 # --- One table in four looks, each read back --------------------------------------------------------
 
-TABLE = Table(
+TABLE = ReportTable(
     "Counts & shares_of A",
     ("name", "count", "share"),
     (("a|b", "7", "50.0%"), ("long name", "1234", "-")),
@@ -300,12 +303,12 @@ def test_latex_escapes() -> None:
 
 def test_a_row_of_another_width_is_refused() -> None:
     with pytest.raises(ValueError, match="a row of 1 cells"):
-        Table("t", ("a", "b"), (("1",),))
+        ReportTable("t", ("a", "b"), (("1",),))
 
 
 @pytest.mark.parametrize("ending", list(LOOKS))
 def test_empty_tables(ending: str) -> None:
-    assert "name" in LOOKS[ending](Table("t", ("name",), ()))
+    assert "name" in LOOKS[ending](ReportTable("t", ("name",), ()))
 
 
 # --- The paper's figures are consistent in themselves and with the facts that must hold (semantics §6)
@@ -338,11 +341,11 @@ def test_recall_without_the_filter_is_a_quarter() -> None:
 # --- Tables, text and figures of an evaluation: the numbers are those of the totals, the paper's are marked
 
 
-def settings(**changes: object) -> Settings:
+def settings(**changes: object) -> EvaluationSettings:
     return replace(default_settings(), detectors=DETECTORS, **changes)  # type: ignore[arg-type]
 
 
-def the_table(totals: Totals, *failed: dict[str, str]) -> Table:
+def the_table(totals: Totals, *failed: dict[str, str]) -> ReportTable:
     """The only one."""
     (table,) = results_tables(totals, *failed).values()
     return table

@@ -16,7 +16,7 @@ from roadproof.extensions.pages.page.summary import Overview
 from roadproof.extensions.pages.page.templates import page as page_of
 from roadproof.extensions.pages.page.templates import render
 from roadproof.frontends.cli.main import main
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.package_data import shipped_folder
 
 HEADED = {"roadproof": "1.0.0", "library": "0123456789abcdef"}
 HOSTILE = "<img src=x onerror=alert(1)>"
@@ -486,5 +486,14 @@ def test_the_shipped_proofs_are_a_page(tmp_path):
     folder = tmp_path / "some"
     folder.mkdir()
     for name in ("P2-base", "P8-rear-base"):
-        shutil.copy(shipped("proofs") / f"{name}.json", folder)
+        shutil.copy(shipped_folder("proofs") / f"{name}.json", folder)
     assert "2 of 2 accepted" in made(folder, out=tmp_path / "page.html")[1]
+
+
+def test_a_none_within_is_checked_and_its_tree_is_not_listed(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    rp.witness("v_lon(SV) > 41 m/s", horizon="1.8 s", out=out, pictures=False, jobs=1)
+    page = rp.page(out, out=tmp_path / "page.html", jobs=1)
+    assert page.checked is not None
+    assert [x.verdict for x in page.checked.findings] == ["NONE-WITHIN"]
+    assert "sum node" not in page.text  # it is evidence, and no answer whose fields are listed

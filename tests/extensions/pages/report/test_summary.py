@@ -10,7 +10,7 @@ import roadproof as rp
 from evidence.folders import some_proofs
 from extensions.pages.report.test_page import HEADED, body_of, drive_in, hostile_overlap, made
 from roadproof.engines.prove.properties import template_properties
-from roadproof.extensions.pages.page.results import Result
+from roadproof.extensions.pages.page.results import PageResult
 from roadproof.extensions.pages.page.summary import overview
 
 
@@ -104,7 +104,7 @@ def test_versions_definitions_and_digests_are_told(tmp_path):
     ],
 )
 def test_verdicts_are_found_in_results_of_each_kind(kind, data, verdicts, subject):
-    found = overview(Result("x", f"roadproof/{kind}/1", data), "", "")
+    found = overview(PageResult("x", f"roadproof/{kind}/1", data), "", "")
     assert found.verdicts == verdicts
     assert subject in found.subject
     assert found.rank == (1 if {"UNKNOWN", "undecided"} & {*verdicts} else 2)
@@ -125,7 +125,7 @@ def test_drives_are_a_gallery_of_moving_pictures(tmp_path):
 
 def test_an_open_part_leads_to_its_place_though_needed_parts_are_shown_last():
     entries = [{"verdict": "REFUTED", "redundant": False}, {"verdict": "UNKNOWN", "redundant": None}]
-    found = overview(Result("x", "roadproof/redundancy/1", {"verdicts": entries}), "", "")
+    found = overview(PageResult("x", "roadproof/redundancy/1", {"verdicts": entries}), "", "")
     assert [(x.verdict, x.target) for x in found.statements] == [
         ("UNKNOWN", "change-0-0"),
         ("REFUTED", "change-0-1"),
@@ -147,7 +147,7 @@ def test_a_section_with_a_rejected_certificate_comes_first(tmp_path):
 @pytest.mark.parametrize("untested", [0, 1, 103])
 def test_a_catalogue_with_untested_situations_has_open_points(untested):
     figure = {"set_name": "base", "kind": "classes", "sector": "", "tested": 115 - untested, "total": 115}
-    found = overview(Result("x", "roadproof/catalogue/1", {"tests": [], "figures": [figure]}), "", "")
+    found = overview(PageResult("x", "roadproof/catalogue/1", {"tests": [], "figures": [figure]}), "", "")
     assert found.remarked == bool(untested)
     assert found.rank == (1 if untested else 2)
-    assert (f"{untested} of 115 classes untested" in found.told) == bool(untested)
+    assert (f"{untested} of 115 classes untested" in found.counts) == bool(untested)

@@ -13,11 +13,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from roadproof.extensions.pages.studio.pages import Begun
-from roadproof.extensions.pages.studio.server import Studio, application, listen
-from roadproof.extensions.pages.studio.worker_pool import Limits
+from roadproof.extensions.pages.studio.pages import StartContent
+from roadproof.extensions.pages.studio.server import StudioServer, application, listen
+from roadproof.extensions.pages.studio.worker_pool import PoolLimits
 
-NOBODY = Limits(workers=0)
+NOBODY = PoolLimits(workers=0)
 DRAFT = {"base": "base", "text": "", "before": None, "options": {}, "params": {}}
 
 
@@ -65,13 +65,13 @@ class Served:
 
 
 @contextmanager
-def serving(largest_body: int = 100_000, limits: Limits = NOBODY) -> Iterator[Served]:
+def serving(largest_body: int = 100_000, limits: PoolLimits = NOBODY) -> Iterator[Served]:
     """A server in a thread of this process, by default without workers."""
     import uvicorn
 
     listening = listen(0)
     port = listening.getsockname()[1]
-    studio = Studio(Begun("def mine(a: vehicle) := true"), limits, limits)
+    studio = StudioServer(StartContent("def mine(a: vehicle) := true"), limits, limits)
     app = application(studio, port, "the-token", largest_body)
     server = uvicorn.Server(uvicorn.Config(app, log_level="error", timeout_graceful_shutdown=1))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})

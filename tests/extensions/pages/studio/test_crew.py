@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from extensions.pages.studio.serving import question
-from roadproof.extensions.pages.studio.worker_pool import Limits, Message, WorkerPool
+from roadproof.extensions.pages.studio.worker_pool import Message, PoolLimits, WorkerPool
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="processes are killed by signals of POSIX")
 
@@ -22,7 +22,7 @@ SHORT = question("v_lon(SV) > 3 m/s")
 
 
 @asynccontextmanager
-async def crew(limits: Limits) -> AsyncIterator[WorkerPool]:
+async def crew(limits: PoolLimits) -> AsyncIterator[WorkerPool]:
     made = WorkerPool(limits)
     await made.start()
     try:
@@ -47,7 +47,7 @@ async def answer(made: WorkerPool, ask: dict[str, Any], seconds: float | None = 
         return [message async for message in told][-1]
 
 
-async def begun(told: Any) -> Message:
+async def start_content(told: Any) -> Message:
     """A word that a worker has said of its job."""
     async for message in told:
         if message.get("stage"):
@@ -65,18 +65,18 @@ def is_alive(process: int) -> bool:
 
 @conducted
 async def test_a_job_that_nobody_listens_to_frees_the_processor() -> None:
-    async with crew(Limits(workers=1)) as made:
+    async with crew(PoolLimits(workers=1)) as made:
         async with aclosing(made.work("find", LONG)) as told:
-            await begun(told)
+            await start_content(told)
             process = made.every[0].process.pid
         assert not is_alive(process)
 
 
 @conducted
 async def test_a_worker_that_is_killed_costs_its_job_alone() -> None:
-    async with crew(Limits(workers=1)) as made:
+    async with crew(PoolLimits(workers=1)) as made:
         async with aclosing(made.work("find", LONG)) as told:
-            await begun(told)
+            await start_content(told)
             os.kill(made.every[0].process.pid, signal.SIGKILL)
             rest = [message async for message in told]
         assert "SIGKILL" in rest[-1]["error"]
@@ -85,7 +85,7 @@ async def test_a_worker_that_is_killed_costs_its_job_alone() -> None:
 
 @conducted
 async def test_an_idle_worker_that_died_is_not_asked() -> None:
-    async with crew(Limits(workers=1)) as made:
+    async with crew(PoolLimits(workers=1)) as made:
         assert "answer" in await answer(made, SHORT)
         os.kill(made.every[0].process.pid, signal.SIGKILL)
         made.every[0].process.join()
@@ -94,10 +94,10 @@ async def test_an_idle_worker_that_died_is_not_asked() -> None:
 
 @conducted
 async def test_time_and_memory_of_a_job_have_limits_and_jobs_beyond_the_queue_are_refused() -> None:
-    async with crew(Limits(workers=1, waiting=1)) as made:
+    async with crew(PoolLimits(workers=1, waiting=1)) as made:
         assert "ended after 0.5 s" in (await answer(made, LONG, seconds=0.5))["error"]
         async with aclosing(made.work("find", LONG)) as first, aclosing(made.work("find", SHORT)) as second:
-            await begun(first)
+            await start_content(first)
             assert await anext(second) == {"waiting": True}
             refused = await anext(made.work("find", SHORT))
             assert (refused["full"], "1 jobs run and 1 wait" in str(refused["error"])) == (True, True)
@@ -105,7 +105,7 @@ async def test_time_and_memory_of_a_job_have_limits_and_jobs_beyond_the_queue_ar
 
 @conducted
 async def test_a_job_that_takes_too_much_memory_is_told_so() -> None:
-    async with crew(Limits(workers=1, memory=1)) as made:
+    async with crew(PoolLimits(workers=1, memory=1)) as made:
         told = await answer(made, LONG)
         assert "memory" in told["error"] or "its process ended" in told["error"]
 
@@ -130,7 +130,7 @@ def test_a_worker_keeps_to_the_limit_that_the_studio_was_started_with(memory: in
 
 @conducted
 async def test_mistakes_of_a_user_are_words_and_the_worker_goes_on() -> None:
-    async with crew(Limits(workers=1)) as made:
+    async with crew(PoolLimits(workers=1)) as made:
         process = made.every[0].process.pid
         for ask in (question("danger(SV)"), question(negated=1, count=99), {}, {"draft": 3}):
             told = await answer(made, ask)

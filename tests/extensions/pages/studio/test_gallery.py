@@ -8,7 +8,7 @@ import pytest
 
 from roadproof.evidence.drive_file import load_drive
 from roadproof.extensions.pages.studio import gallery, jobs
-from roadproof.extensions.pages.studio.pages import LARGEST_FILE, begin_with, found_in
+from roadproof.extensions.pages.studio.pages import LARGEST_FILE, read_folder, read_start_files
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
 DRIVES = EXAMPLES / "traffic" / "drives"
@@ -47,7 +47,7 @@ def test_files_of_a_folder_are_listed_and_others_left_out(tmp_path: Path) -> Non
     (tmp_path / "large.json").write_text(drive + " " * LARGEST_FILE, "utf-8")
     (tmp_path / "own.spec").write_text("def near(a, b: vehicle) := s(b) - s(a) <= 5 m\n", "utf-8")
     (tmp_path / "broken.spec").write_bytes(b"\xff\xfe")
-    found = found_in(tmp_path)
+    found = read_folder(tmp_path)
     assert [name for name, _ in found.drives] == ["a.json"]
     assert [name for name, _ in found.specs] == ["own.spec"]
     assert found.text == ""
@@ -57,10 +57,10 @@ def test_files_of_a_folder_are_listed_and_others_left_out(tmp_path: Path) -> Non
 def test_files_that_are_named_are_shown_and_a_folder_is_listed(tmp_path: Path) -> None:
     spec = tmp_path / "own.spec"
     spec.write_text("def near(a, b: vehicle) := s(b) - s(a) <= 5 m\n", "utf-8")
-    found = begin_with([spec, DRIVES])
+    found = read_start_files([spec, DRIVES])
     assert found.text == spec.read_text("utf-8")
     assert found.specs == (("own.spec", found.text),)
     assert [name for name, _ in found.drives] == [x.name for x in sorted(DRIVES.glob("*.json"))]
     assert found.drives[0][1]["formula"] == load_drive(sorted(DRIVES.glob("*.json"))[0]).formula
     assert json.loads(json.dumps(found.as_data()))["shows"] is True
-    assert begin_with([]).as_data()["shows"] is False
+    assert read_start_files([]).as_data()["shows"] is False

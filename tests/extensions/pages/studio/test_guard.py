@@ -14,14 +14,14 @@ import pytest
 
 from extensions.pages.studio.serving import Served, question, serving
 from roadproof.errors import InputError, Position, RoadproofError
+from roadproof.extensions.pages.places import FormulaPlace
 from roadproof.extensions.pages.studio import jobs
 from roadproof.extensions.pages.studio.drafting import QUESTION
 from roadproof.extensions.pages.studio.dropping import drop
-from roadproof.extensions.pages.studio.pages import begin_with, served
-from roadproof.extensions.pages.studio.requests import form, read_ask
+from roadproof.extensions.pages.studio.pages import read_start_files, static_files
+from roadproof.extensions.pages.studio.requests import form, read_question
 from roadproof.extensions.pages.studio.showing import marks_of
 from roadproof.frontends.settings.questions import Witness
-from roadproof.library.uses import Place
 from roadproof.logic.formula import Truth
 
 pytest.importorskip("uvicorn", reason="the extra 'studio' is not installed")
@@ -88,7 +88,7 @@ def test_a_wrong_token_is_refused(server: Served, token: str | None) -> None:
 
 
 def test_nothing_that_is_served_without_the_token_holds_it(server: Served) -> None:
-    for path in ("/", *(f"/page/{name}" for name in served())):
+    for path in ("/", *(f"/page/{name}" for name in static_files())):
         assert b"the-token" not in server.get(path)[2]
 
 
@@ -196,10 +196,10 @@ def test_two_pages_have_different_nonces(server: Served) -> None:
 def test_own_scripts_make_no_code_of_texts() -> None:
     """No eval, no function made of text, no HTML made of text; the policy forbids the first two anyway."""
     wanted = re.compile(r"\beval\(|new Function|innerHTML|outerHTML|insertAdjacentHTML|document\.write")
-    own = {name: x.text for name, x in served().items() if not name.startswith("vendor/")}
+    own = {name: x.text for name, x in static_files().items() if not name.startswith("vendor/")}
     assert len(own) > 10
     assert [name for name, text in own.items() if wanted.search(text)] == []
-    vendored = {name: x.text for name, x in served().items() if name.startswith("vendor/")}
+    vendored = {name: x.text for name, x in static_files().items() if name.startswith("vendor/")}
     assert [n for n, text in vendored.items() if re.search(r"\beval\(|new Function\(", text)] == []
 
 
@@ -260,11 +260,11 @@ SAMPLES = EXAMPLES / "catalogue" / "tests" / "samples"
 def test_specifications_and_drives_are_opened_by_their_endings(tmp_path: Path) -> None:
     spec = tmp_path / "own.spec"
     spec.write_text('def near(a, b: vehicle) "near" := s(b) - s(a) <= 5 m\n', "utf-8")
-    found = begin_with([spec, DRIVE])
+    found = read_start_files([spec, DRIVE])
     assert found.text == spec.read_text("utf-8")
     assert found.drives == ((DRIVE.name, json.loads(DRIVE.read_text("utf-8"))),)
     with pytest.raises(InputError, match=r"own\.txt: the studio opens"):
-        begin_with([spec, tmp_path / "own.txt"])
+        read_start_files([spec, tmp_path / "own.txt"])
 
 
 def test_samples_recordings_and_certificates_of_the_command_line_are_opened_by_the_page(
@@ -272,21 +272,21 @@ def test_samples_recordings_and_certificates_of_the_command_line_are_opened_by_t
 ) -> None:
     proof = next((EXAMPLES.parent / "proofs").glob("P4-*.json"))
     samples = SAMPLES / "braking.csv"
-    found = begin_with([samples, DRIVE, proof])
+    found = read_start_files([samples, DRIVE, proof])
     assert [x["name"] for x in found.as_data()["files"]] == [samples.name, proof.name]  # type: ignore[attr-defined]
     assert dict(found.files)[samples.name] == samples.read_text("utf-8")
     assert [name for name, _ in found.drives] == [DRIVE.name]
-    assert begin_with([SAMPLES]).files == ()
+    assert read_start_files([SAMPLES]).files == ()
     (tmp_path / "own.csv").write_bytes(b"\xff\xfe")
     with pytest.raises(InputError, match=r"own\.csv: the file is text in UTF-16|own\.csv is not UTF-8 text"):
-        begin_with([tmp_path / "own.csv"])
+        read_start_files([tmp_path / "own.csv"])
 
 
 def dropped(*paths: Path) -> dict[str, Any]:
     files = [{"name": x.name, "content": x.read_text("utf-8")} for x in paths]
     draft = {"base": "base", "text": "", "options": {}, "params": {}}
     asked = {"draft": draft, "set": "base", "formula": "scenario_4(SV,POV,L)", "files": files}
-    return drop(read_ask(asked))
+    return drop(read_question(asked))
 
 
 def test_a_drive_is_shown_and_samples_are_monitored() -> None:
@@ -303,7 +303,7 @@ def test_the_form_of_the_page_follows_the_options_of_questions() -> None:
     [objective] = [x for x in form() if x["name"] == "objective"]
     assert objective["choices"] == Witness.options()["objective"].choices
     asked = {"draft": {}, "formula": "true", "settings": {"objective": "severe"}}
-    assert read_ask(asked).options("find") == {"objective": "severe"}
+    assert read_question(asked).options("find") == {"objective": "severe"}
 
 
 @pytest.mark.parametrize(
@@ -326,7 +326,7 @@ def test_questions_of_a_page_are_read_strictly(asked: dict[str, Any], told: str)
 
 
 def test_marks_are_of_places_in_the_texts_of_the_editors_alone() -> None:
-    place = Place(QUESTION, Position(1, 2, 1, 5), Truth(True))
+    place = FormulaPlace(QUESTION, Position(1, 2, 1, 5), Truth(True))
     assert marks_of([place, place], "why") == [
         {"where": QUESTION, "from": [1, 2], "to": [1, 5], "kind": "why"}
     ]

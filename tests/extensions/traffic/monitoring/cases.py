@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 from hypothesis import strategies as st
 
-from roadproof.extensions.traffic.evaluate.recursive import Trace, TraceReader
+from roadproof.extensions.traffic.evaluate.recursive import SampledTrace, TraceReader
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Application, Formula, subformulas
@@ -95,10 +95,10 @@ def random_batch(seed: int, traces: int, longest: int, ties: bool = True) -> Bat
     return Batch(DT, lengths, signals, sizes, given)
 
 
-def trace_of(batch: Batch, index: int) -> Trace:
+def trace_of(batch: Batch, index: int) -> SampledTrace:
     """One trace of a batch, without what follows its end."""
     length = int(batch.lengths[index])
-    return Trace(
+    return SampledTrace(
         batch.dt,
         length,
         {key: values[:length, index].tolist() for key, values in batch.signals.items()},

@@ -23,14 +23,14 @@ from extensions.traffic.monitoring.cases import (
     trace_of,
 )
 from roadproof.errors import InputError
-from roadproof.extensions.traffic.evaluate.recursive import Trace, TraceReader
+from roadproof.extensions.traffic.evaluate.recursive import SampledTrace, TraceReader
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.rewrite import bounds_of
 from roadproof.semantics.sampled import Batch, boolean, compile
 from roadproof.semantics.sampled.answers import Convention
-from roadproof.semantics.sampled.arithmetic import Program
+from roadproof.semantics.sampled.arithmetic import Bytecode
 from roadproof.semantics.sampled.batch import Array, steps_of
 from roadproof.world.drive import Drive, Motion, Piece
 
@@ -210,7 +210,7 @@ def test_every_sample_is_looked_at_once(monkeypatch: pytest.MonkeyPatch) -> None
     looked = np.zeros((int(batch.lengths.max()), batch.traces), dtype=int)
     true_run = boolean.run
 
-    def run(program: Program, batch: Batch, rows: slice, columns: slice) -> list[Array]:
+    def run(program: Bytecode, batch: Batch, rows: slice, columns: slice) -> list[Array]:
         looked[rows, columns] += 1
         return true_run(program, batch, rows, columns)
 
@@ -241,13 +241,13 @@ def test_given_truth_is_found_whatever_its_definitions_are_called() -> None:
 # last change on, every formula keeps its value. The exact judge is asked the same on drives.
 
 
-def endless(trace: Trace) -> Definition:
+def endless(trace: SampledTrace) -> Definition:
     """The reading of a trace whose last sample lasts for ever."""
     reader = TraceReader(trace)
     return Definition(trace.length - 1, DT, lambda x, k: reader.holds(x, k, "clip"), trace.given)
 
 
-def _continued(batch: Batch, seed: int) -> list[Trace]:
+def _continued(batch: Batch, seed: int) -> list[SampledTrace]:
     """Every trace of the batch with some more samples."""
     other = random_batch(seed, batch.traces, 6)
     made = []
@@ -255,7 +255,7 @@ def _continued(batch: Batch, seed: int) -> list[Trace]:
         head, tail = trace_of(batch, i), trace_of(other, i)
         given_truth = {x: [*head.given[x], *tail.given[x]] for x in head.given}
         signals = {x: [*head.signals[x], *tail.signals[x]] for x in head.signals}
-        made.append(Trace(DT, head.length + tail.length, signals, head.sizes, given_truth))
+        made.append(SampledTrace(DT, head.length + tail.length, signals, head.sizes, given_truth))
     return made
 
 
@@ -344,7 +344,7 @@ def _sampled(accelerations: Sequence[Sequence[int]], samples: int) -> Batch:
 def test_decided_answers_are_those_of_the_judge(
     formula: Formula, accelerations: list[tuple[int, ...]], samples: int
 ) -> None:
-    judge = pytest.importorskip("roadproof.semantics.exact.exact").judge
+    judge = pytest.importorskip("roadproof.semantics.exact.judging").judge
     holds = judge(formula, _drive(accelerations)).holds
     found = compile({"it": formula}).evaluate(_sampled(accelerations, samples)).answers["it"]
     assert not (found.true[0] and not holds)
@@ -356,7 +356,7 @@ def test_decided_answers_are_those_of_the_judge(
 def test_bounded_formulas_inside_a_trace_are_decided_as_the_judge_does(
     formula: Formula, accelerations: list[tuple[int, ...]]
 ) -> None:
-    judge = pytest.importorskip("roadproof.semantics.exact.exact").judge
+    judge = pytest.importorskip("roadproof.semantics.exact.judging").judge
     temporal = [x for x in subformulas(formula) if isinstance(x, f.Until | f.Eventually | f.Always)]
     assume(all(x.interval.high is not None for x in temporal))
     longest = 1 + sum(int(bounds_of(x.interval)[1] / DT) for x in temporal)  # type: ignore[operator]

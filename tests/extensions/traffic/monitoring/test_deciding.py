@@ -10,10 +10,10 @@ import pytest
 from extensions.exchange.streaming.random_formulas import random_formula
 from extensions.traffic.monitoring.cases import random_batch
 from roadproof.extensions.traffic.evaluate.observed import observe_drive
+from roadproof.extensions.traffic.evaluate.robust import robustness
 from roadproof.extensions.traffic.report.one_trace import as_text
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
-from roadproof.semantics.exact.robust import robustness
 from roadproof.semantics.sampled.compiled import compile
 from searching.known import BASE, ROADS, VALUES, known
 

@@ -7,7 +7,7 @@ import pytest
 import roadproof as rp
 from roadproof.errors import UsageError
 from roadproof.evidence.codec import read
-from roadproof.extensions.traffic.answers.monitor import Answer
+from roadproof.extensions.traffic.answers.monitor import MonitorData
 from roadproof.frontends.cli.main import main
 
 DRIVE = Path(__file__).parents[4] / "examples" / "catalogue" / "tests" / "drives" / "cut-in.json"
@@ -20,7 +20,7 @@ def test_models_that_are_named_drive_the_trace() -> None:
         (x.driver, x.side, x.gap) for x in test.decisions
     ]
     assert "careful, scenario_1: preventable (11.75 m left)" in str(found)
-    kept = read(Answer, found.as_data(), "the answer")
+    kept = read(MonitorData, found.as_data(), "the answer")
     assert [(x.driver, x.side) for x in kept.drivers] == [(x.driver, x.side) for x in found.decisions]
 
 

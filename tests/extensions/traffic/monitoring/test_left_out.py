@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 import roadproof as rp
+from roadproof.extensions.assurance.folder_view import folder_data
 from roadproof.frontends.cli.main import main
-from roadproof.questions.views import folder_data
 
 DRIVE = Path(__file__).parents[4] / "examples" / "traffic" / "drives" / "scenario-01-base.json"
 SLIP = "<slipAngle><exact>0.3</exact></slipAngle>"

@@ -17,9 +17,10 @@ from extensions.traffic.monitoring.cases import (
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.semantics.sampled import answers, arithmetic, boolean, compiled, semantics
+from roadproof.semantics.sampled import answers, arithmetic, boolean, compiled
+from roadproof.semantics.sampled import lattice as semantics
 from roadproof.semantics.sampled.batch import Array
-from roadproof.semantics.sampled.semantics import View
+from roadproof.semantics.sampled.lattice import View
 
 NEAR = f.Compare(t.Signal("s", "SV"), "<", t.Signal("s", "POV"))
 INVERSE = f.Compare(t.Inverse(t.Signal("s", "SV")), ">=", t.Inverse(t.Signal("s", "POV")))
@@ -97,8 +98,10 @@ def weak_is_strong(patch: pytest.MonkeyPatch) -> None:
 
 
 def empty_windows_fail_always(patch: pytest.MonkeyPatch) -> None:
-    right = semantics.Evaluation._padding
-    patch.setattr(semantics.Evaluation, "_padding", lambda self, view, universal: right(self, view, False))
+    right = semantics.LatticeEvaluation._padding
+    patch.setattr(
+        semantics.LatticeEvaluation, "_padding", lambda self, view, universal: right(self, view, False)
+    )
 
 
 def ends_of_traces_ignored(patch: pytest.MonkeyPatch) -> None:
@@ -123,7 +126,7 @@ def strictness_lost(patch: pytest.MonkeyPatch) -> None:
 
 
 def square_forgotten(patch: pytest.MonkeyPatch) -> None:
-    patch.setattr(arithmetic._Builder, "power_of", lambda self, base, exponent: self.place(base))
+    patch.setattr(arithmetic._BytecodeBuilder, "power_of", lambda self, base, exponent: self.place(base))
 
 
 def inverse_of_zero_is_zero(patch: pytest.MonkeyPatch) -> None:

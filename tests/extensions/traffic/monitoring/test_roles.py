@@ -13,7 +13,7 @@ from roadproof.evidence.drive_file import load_drive
 from roadproof.extensions.traffic.simulate.planting import with_roles
 from roadproof.frontends.cli.main import main
 from roadproof.library.loading import bundled_library
-from roadproof.library.roles import cast_of, vehicle_order, with_vehicles
+from roadproof.library.roles import assign_roles, vehicle_order, with_vehicles
 from roadproof.verdict import ExitCode
 
 DRIVES = Path(__file__).parents[4] / "examples" / "catalogue" / "tests" / "drives"
@@ -106,7 +106,7 @@ def test_vehicles_of_recordings_by_role(tmp_path: Path) -> None:
 def test_the_rule(
     vehicles: list[str], wanted: list[str], given: dict[str, str], expected: dict[str, str]
 ) -> None:
-    assert dict(cast_of(vehicles, wanted, given, "here").by_name) == expected
+    assert dict(assign_roles(vehicles, wanted, given, "here").by_name) == expected
 
 
 @pytest.mark.parametrize(
@@ -124,7 +124,7 @@ def test_unclear_roles_are_refused(
     vehicles: list[str], wanted: list[str], given: dict[str, str], told: str
 ) -> None:
     with pytest.raises(InputError, match=f"^here.*{told}"):
-        cast_of(vehicles, wanted, given, "here")
+        assign_roles(vehicles, wanted, given, "here")
 
 
 def test_three_vehicles_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,1 +1,1 @@
-"""What answers about requirements, cases and bundles say, as JSON has it."""
+"""The JSON documents of requirements, assurance cases and bundles, as data classes."""

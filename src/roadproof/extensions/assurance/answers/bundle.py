@@ -1,4 +1,6 @@
-"""The manifest of an auditor's bundle: what is in it, and what checks it."""
+"""The JSON document ``manifest.json`` of an auditor's bundle: its content, and what the check
+script expects.
+"""
 
 from collections.abc import Mapping
 from typing import Annotated, Final, Literal
@@ -12,7 +14,7 @@ SCHEMA: Final = "roadproof/bundle/1"
 
 @dataclass(frozen=True, kw_only=True)
 class Package:
-    """A package that the check installs."""
+    """A Python package that the check script installs."""
 
     name: str
     version: str
@@ -21,7 +23,9 @@ class Package:
 
 @dataclass(frozen=True, kw_only=True)
 class Argument:
-    """An assurance case or requirements, which the check reads again with the evidence of the bundle."""
+    """An assurance case or a file of requirements, which the check script checks against the evidence of the
+    bundle.
+    """
 
     command: Literal["assurance", "trace"]
     file: Annotated[str, Doc("The case or the requirements.")]
@@ -30,7 +34,7 @@ class Argument:
 
 @dataclass(frozen=True, kw_only=True)
 class Manifest:
-    """What is in a bundle."""
+    """The content of a bundle."""
 
     schema: Literal["roadproof/bundle/1"] = SCHEMA
     roadproof: shared.Version

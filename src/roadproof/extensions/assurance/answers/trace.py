@@ -1,13 +1,13 @@
-"""The answer of ``roadproof trace``: what shows each requirement."""
+"""The JSON document of ``roadproof trace``: requirements, their links, and the evidence for each."""
 
 from enum import StrEnum
 from typing import Annotated, Final, Literal, TypeAlias
 
+from roadproof.evidence.answers.headings import BaseHeading
 from roadproof.evidence.answers.shared import (
     Fingerprint,
     Options,
     Parameters,
-    PlainHeading,
     Reason,
     SetName,
     Specifications,
@@ -22,11 +22,11 @@ LinkKind: TypeAlias = Literal["claim", "scenario", "test", "driver", "plate", "e
 
 
 class LinkState(StrEnum):
-    """What evidence, checked again, says of a link; the best comes first.
+    """The state of a link according to the evidence, which is checked again; ordered from best to worst.
 
-    PROVED: for all time. WITNESSED: by a judged drive. UNKNOWN: not decided. STALE: it was shown, and
-    something that it rests on is another now. MISSING: there is no evidence. REJECTED: there is evidence, and
-    it does not show what it says. REFUTED: the opposite is shown.
+    PROVED: proved for all time. WITNESSED: shown by a judged drive. UNKNOWN: not decided. STALE: was shown,
+    but something that the link rests on has changed. MISSING: no evidence. REJECTED: the evidence does not
+    show its claim. REFUTED: the opposite is shown.
     """
 
     PROVED = "proved"
@@ -39,25 +39,25 @@ class LinkState(StrEnum):
 
     @property
     def rank(self) -> int:
-        """0 is the best."""
+        """The position in the order of states; 0 is the best."""
         return [*LinkState].index(self)
 
     @property
     def is_shown(self) -> bool:
-        """Whether the requirement may rest on it."""
+        """Return whether the link is shown: PROVED or WITNESSED."""
         return self in (LinkState.PROVED, LinkState.WITNESSED)
 
     @property
     def exit_code(self) -> ExitCode:
-        """20 where nothing is decided, 10 for all that is neither shown nor undecided."""
+        """The exit code of a link: 0 where it is shown, 20 where it is undecided, else 10."""
         if self.is_shown:
             return ExitCode.AS_EXPECTED
         return ExitCode.UNKNOWN if self is LinkState.UNKNOWN else ExitCode.UNEXPECTED
 
 
 @dataclass(frozen=True, kw_only=True)
-class Position:
-    """Where a requirement is written."""
+class RequirementPlace:
+    """The file, line and column of a requirement."""
 
     file: str
     line: Annotated[int, Rule(minimum=1)] = 1
@@ -66,7 +66,7 @@ class Position:
 
 @dataclass(frozen=True, kw_only=True)
 class LinkedEvidence:
-    """A finding of ``roadproof check``."""
+    """A finding of ``roadproof check`` about one piece of evidence."""
 
     where: Annotated[str, Doc("The file, or the entry of an index.")]
     label: Annotated[str, Doc("What it is of, such as P1 scenario 4 base.")]
@@ -78,7 +78,7 @@ class LinkedEvidence:
 
 @dataclass(frozen=True, kw_only=True)
 class TracedLink:
-    """A link of a requirement."""
+    """A link of a requirement with its state."""
 
     kind: LinkKind
     target: Annotated[str, Rule(least=1), Doc("As the requirement names it.")]
@@ -92,20 +92,20 @@ class TracedLink:
 
 @dataclass(frozen=True, kw_only=True)
 class TracedRequirement:
-    """A requirement."""
+    """A requirement with its state."""
 
     id: Annotated[str, Rule(least=1)]
     title: str
     text: str
     parents: Annotated[tuple[str, ...], Doc("The requirements that it is a part of or derived from.")]
-    place: Position
+    place: RequirementPlace
     state: Annotated[LinkState, Doc("The worst of its links and parts; missing where it has none.")]
     links: tuple[TracedLink, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(PlainHeading):
-    """What shows each requirement."""
+class TraceData(BaseHeading):
+    """Requirements with the evidence for each."""
 
     schema: Literal["roadproof/trace/1"] = SCHEMA
     library: Annotated[Fingerprint, Doc("Of the library at hand with the specification files of the trace.")]
@@ -121,13 +121,15 @@ class Answer(PlainHeading):
 
     @property
     def exit_code(self) -> ExitCode:
-        """10 where a requirement is not shown or evidence is rejected, 20 where one is not decided."""
+        """The exit code: 10 where a requirement is not shown or evidence is rejected, 20 where one is
+        undecided.
+        """
         codes = [x.state.exit_code for x in self.requirements] or [ExitCode.UNKNOWN]
         codes += [_beside(x.outcome) for x in self.unlinked]
         return ExitCode.UNEXPECTED if ExitCode.UNEXPECTED in codes else max(codes)
 
 
 def _beside(outcome: Acceptance) -> ExitCode:
-    """The exit code of evidence that no requirement names."""
+    """Return the exit code of evidence that no requirement names."""
     decided = outcome.exit_code in (ExitCode.AS_EXPECTED, ExitCode.UNKNOWN)
     return outcome.exit_code if decided else ExitCode.UNEXPECTED

@@ -1,4 +1,6 @@
-"""``requirements.lock.json``: what every link of a trace rested on when it was accepted."""
+"""The lock file ``requirements.lock.json``: everything that each link of a trace rested on when it was
+accepted.
+"""
 
 from collections.abc import Mapping
 from typing import Annotated, Final, Literal
@@ -12,7 +14,7 @@ SCHEMA: Final = "roadproof/trace-lock/1"
 
 @dataclass(frozen=True, kw_only=True)
 class LockedLink:
-    """A link, and the names of all that it rests on."""
+    """A link with the names of all parts that it rests on."""
 
     requirement: Annotated[str, Rule(least=1)]
     kind: str
@@ -22,7 +24,7 @@ class LockedLink:
 
 @dataclass(frozen=True, kw_only=True)
 class Lock:
-    """What every link rested on."""
+    """The parts that all links rested on when they were accepted."""
 
     schema: Literal["roadproof/trace-lock/1"] = SCHEMA
     roadproof: Version

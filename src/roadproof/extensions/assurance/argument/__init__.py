@@ -1,1 +1,1 @@
-"""Arguments in Goal Structuring Notation as pictures and pages."""
+"""Arguments in Goal Structuring Notation as SVG pictures and HTML pages."""

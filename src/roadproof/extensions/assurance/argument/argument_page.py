@@ -1,10 +1,10 @@
-"""An assurance case as one page without scripts: states, open points, the picture, evidence and limits."""
+"""An assurance case as one HTML page without scripts: states, open points, picture, evidence and limits."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element as XmlElement
 
-from roadproof.extensions.assurance.answers.assurance import Answer, Element
+from roadproof.extensions.assurance.answers.assurance import ArgumentElement, AssuranceData
 from roadproof.extensions.assurance.argument.drawing import STYLE, as_markup
 from roadproof.extensions.assurance.argument.layout import SHEETS, Rectangle, scale_on
 from roadproof.extensions.pages.page.templates import Sign, page_style, render
@@ -18,16 +18,20 @@ _SIGNS: Mapping[str, Sign] = {
 
 
 @dataclass(frozen=True)
-class Row:
-    """An element in a nested list: ``depth`` below the top goal; ``again``: its support is listed above."""
+class ArgumentRow:
+    """An element in a nested list; ``depth`` counts levels below the top goal, ``again`` marks one whose
+    support is listed above.
+    """
 
     depth: int
-    element: Element
+    element: ArgumentElement
     again: bool
 
 
-def argument_page(answer: Answer, picture: XmlElement) -> str:
-    """The page of a checked case with its picture. It prints on sheets of A3, as the picture fits best."""
+def argument_page(answer: AssuranceData, picture: XmlElement) -> str:
+    """Return the HTML page of a checked case with its picture; printed on A3, in the orientation that fits
+    the picture best.
+    """
     width, height = (float(picture.get(x, "1")) for x in ("width", "height"))
     frame = Rectangle(0, 0, width, height)
     elements = {x.id: x for x in answer.elements}
@@ -45,9 +49,12 @@ def argument_page(answer: Answer, picture: XmlElement) -> str:
     )
 
 
-def _rows(name: str, elements: Mapping[str, Element], depth: int, seen: set[str]) -> Iterator[Row]:
+def _rows(
+    name: str, elements: Mapping[str, ArgumentElement], depth: int, seen: set[str]
+) -> Iterator[ArgumentRow]:
+    """Yield an element and all elements below it; support that was listed before is left out."""
     element, again = elements[name], name in seen
-    yield Row(depth, element, again)
+    yield ArgumentRow(depth, element, again)
     if again:
         return
     seen.add(name)

@@ -1,6 +1,6 @@
-"""Widths of texts without a font file, and lines that fit into a width.
+"""Estimates the width of texts without a font file, and wraps texts at a width.
 
-The widths are those of DejaVu Sans, rounded up: system fonts are narrower, so texts never leave their box.
+The widths are those of DejaVu Sans, rounded up. System fonts are narrower, so texts never leave their box.
 """
 
 from collections.abc import Iterator, Sequence
@@ -15,18 +15,18 @@ _WIDTHS = {letter: width for width, letters in _BY_WIDTH.items() for letter in l
 _OTHER = 1.0  # em, of letters that the table lacks
 _BOLD = 1.2
 _SEAMS = "/_-."
-"""Letters after which a long word is divided first."""
+"""Characters after which a long word may be divided."""
 FONT, LEADING = 12.0, 15.0
 
 
 def width_of(text: str, bold: bool = False) -> float:
-    """The width of a text in px, at most."""
+    """Return an upper bound of the width of a text in px."""
     em = sum(_WIDTHS.get(letter, _OTHER) for letter in text)
     return em * FONT * (_BOLD if bold else 1)
 
 
 def wrap(text: str, most: float) -> list[str]:
-    """Lines of a text that are at most so wide; a longer word is divided."""
+    """Return the lines of a text, each at most ``most`` px wide; longer words are divided."""
     lines = [""]
     for word in text.split():
         for piece in _pieces(word, most):
@@ -49,17 +49,17 @@ def _pieces(word: str, most: float) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class TextBlock:
-    """A head in bold above lines of text, centred."""
+    """Lines of centred text below a first line in bold."""
 
     head: str
     lines: Sequence[str]
 
     @property
     def width(self) -> float:
-        """In px."""
+        """The width in px."""
         return max([width_of(self.head, bold=True), *map(width_of, self.lines)])
 
     @property
     def height(self) -> float:
-        """In px."""
+        """The height in px."""
         return LEADING * (1 + len(self.lines))

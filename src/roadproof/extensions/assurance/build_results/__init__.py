@@ -1,1 +1,1 @@
-"""What build servers and code hosts are told of an answer: cases with places, as JUnit XML and SARIF."""
+"""Results for build servers and code hosts: test cases with source locations, as JUnit XML and SARIF."""

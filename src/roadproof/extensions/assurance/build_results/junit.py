@@ -1,4 +1,4 @@
-"""Cases as JUnit XML, valid by the schema that Jenkins' xUnit plugin has (junit-10.xsd)."""
+"""Writes test cases as JUnit XML, valid by the schema of Jenkins' xUnit plugin (junit-10.xsd)."""
 
 from collections.abc import Iterable, Sequence
 from itertools import groupby
@@ -9,29 +9,29 @@ from roadproof.verdict import ExitCode
 
 _ELEMENTS: dict[State, str] = {"failed": "failure", "undecided": "error", "skipped": "skipped"}
 _FORBIDDEN = {code: "\N{REPLACEMENT CHARACTER}" for code in range(32) if chr(code) not in "\t\n\r"}
-"""Characters that XML cannot hold."""
+"""Control characters that XML cannot hold, with their replacement."""
 
 
 def as_junit(title: str, cases: Sequence[Case], in_force: Sequence[str] = ()) -> str:
-    """A suite for each kind of case: a failure where one came out otherwise, an error where it is undecided.
+    """Return JUnit XML with one suite for each kind of case.
 
-    A case that the user lets roadproof skip is ``skipped``.
-    ``in_force``: what was asked otherwise than by default, a property of each suite.
+    A case that did not pass is a failure, an undecided one an error; one that the user lets roadproof skip is
+    ``skipped``. ``in_force``: the settings that differ from their defaults, each a property of every suite.
     """
     suites = xml.Element("testsuites", {"name": title} | _counts(cases))
     order = list(dict.fromkeys(x.suite for x in cases))
-    for name, those in groupby(sorted(cases, key=lambda x: order.index(x.suite)), lambda x: x.suite):
-        _add_suite(suites, name, list(those), in_force)
+    for name, suite_cases in groupby(sorted(cases, key=lambda x: order.index(x.suite)), lambda x: x.suite):
+        _add_suite(suites, name, list(suite_cases), in_force)
     return as_text(suites)
 
 
 def junit(command: str, cases: Sequence[Case], code: ExitCode, in_force: Sequence[str]) -> str:
-    """The cases of a command as JUnit XML."""
+    """Return the cases of a command as JUnit XML."""
     return as_junit(f"roadproof {command}", cases, in_force)
 
 
 def as_text(suites: xml.Element) -> str:
-    """The document with its declaration."""
+    """Return the document as text with its XML declaration."""
     xml.indent(suites)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + xml.tostring(suites, "unicode") + "\n"
 
@@ -49,8 +49,8 @@ def _add_suite(suites: xml.Element, name: str, cases: Sequence[Case], in_force: 
     suite = xml.SubElement(suites, "testsuite", {"name": name} | _counts(cases))
     if in_force:
         properties = xml.SubElement(suite, "properties")
-        for told in in_force:
-            xml.SubElement(properties, "property", name="asked with", value=told)
+        for setting in in_force:
+            xml.SubElement(properties, "property", name="asked with", value=setting)
     for case in cases:
         _add_case(suite, case)
 

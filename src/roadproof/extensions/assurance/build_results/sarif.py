@@ -1,4 +1,4 @@
-"""Cases that did not pass as SARIF 2.1.0 (OASIS), which code hosts show beside the lines they are about."""
+"""Writes test cases that did not pass as SARIF 2.1.0 (OASIS), which code hosts show beside source lines."""
 
 import hashlib
 import json
@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from urllib.parse import quote
 
-from roadproof.frontends.report.cases import MEANINGS, Case, Location
+from roadproof.extensions.assurance.build_results.meanings import MEANINGS
+from roadproof.frontends.report.cases import Case, Location
 from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
 
@@ -16,9 +17,12 @@ _LEVELS = {"failed": "error", "undecided": "warning", "skipped": "note"}
 
 
 def as_sarif(command: str, cases: Sequence[Case], code: ExitCode) -> str:
-    """A result for each case that did not pass. Files below the working directory are told relative to it."""
-    told = [x for x in cases if x.state != "passed"]
-    rules = list(dict.fromkeys(x.rule for x in told if x.rule is not None))
+    """Return SARIF with a result for each case that did not pass.
+
+    Paths of files below the working directory are relative to it.
+    """
+    reported = [x for x in cases if x.state != "passed"]
+    rules = list(dict.fromkeys(x.rule for x in reported if x.rule is not None))
     driver = {
         "name": "roadproof",
         "semanticVersion": VERSION,
@@ -35,14 +39,14 @@ def as_sarif(command: str, cases: Sequence[Case], code: ExitCode) -> str:
         ],
         "originalUriBaseIds": {_ROOT: {"uri": Path.cwd().as_uri() + "/"}},
         "columnKind": "unicodeCodePoints",
-        "results": [_result(x) for x in told],
+        "results": [_result(x) for x in reported],
     }
     content = {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
 def sarif(command: str, cases: Sequence[Case], code: ExitCode, in_force: Sequence[str]) -> str:
-    """The cases of a command as SARIF."""
+    """Return the cases of a command as SARIF."""
     return as_sarif(command, cases, code)
 
 
@@ -63,15 +67,17 @@ def _result(case: Case) -> dict[str, object]:
 
 
 def _fingerprint(case: Case) -> str:
-    """The same for a case in every run, wherever it is written."""
+    """Return an identifier of a case that is stable across runs and independent of its location."""
     return hashlib.sha256(f"{case.suite}\0{case.name}".encode()).hexdigest()[:16]
 
 
 def _place(place: Location, name: str, whole: bool = False, named: bool = False) -> dict[str, object]:
-    """A location; ``whole``: of a file as a whole; ``named``: it is that of the case called ``name``."""
+    """Return a SARIF location; ``whole``: the file as a whole; ``named``: ``name`` is the logical location,
+    not a message.
+    """
     region = {} if whole else {"region": {"startLine": place.line, "startColumn": place.column}}
-    told: dict[str, object] = {"physicalLocation": {"artifactLocation": _artifact(place.file), **region}}
-    return told | ({"logicalLocations": [{"name": name}]} if named else {"message": {"text": name}})
+    location: dict[str, object] = {"physicalLocation": {"artifactLocation": _artifact(place.file), **region}}
+    return location | ({"logicalLocations": [{"name": name}]} if named else {"message": {"text": name}})
 
 
 def _artifact(file: str) -> dict[str, str]:

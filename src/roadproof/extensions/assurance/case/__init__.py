@@ -1,1 +1,1 @@
-"""Assurance cases in Goal Structuring Notation: arguments whose solutions are evidence that is checked."""
+"""Assurance cases in Goal Structuring Notation: their elements, rules, states, limits and TOML files."""

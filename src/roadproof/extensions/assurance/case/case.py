@@ -1,4 +1,6 @@
-"""An assurance case in Goal Structuring Notation (GSN): elements, and how they support each other."""
+"""The data of an assurance case in Goal Structuring Notation (GSN): elements, and how they support each
+other.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,8 +9,8 @@ from functools import cached_property
 from pathlib import Path
 
 
-class Kind(StrEnum):
-    """The kinds of elements of GSN."""
+class ElementKind(StrEnum):
+    """The kinds of GSN elements."""
 
     GOAL = "goal"
     STRATEGY = "strategy"
@@ -19,19 +21,19 @@ class Kind(StrEnum):
 
     @property
     def is_contextual(self) -> bool:
-        """Whether elements of the kind stand beside the argument."""
-        return self in (Kind.CONTEXT, Kind.ASSUMPTION, Kind.JUSTIFICATION)
+        """Return whether elements of this kind are context: they neither support nor are supported."""
+        return self in (ElementKind.CONTEXT, ElementKind.ASSUMPTION, ElementKind.JUSTIFICATION)
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """The evidence of a solution.
+    """The evidence that a solution refers to, and what the case expects of it.
 
-    ``path``: a file or folder, as it is from the folder of the case. ``expect``: verdicts of which each
-    selected entry has one. ``select``: patterns such as ``P4 *`` for labels or names of files, or where a
-    catalogue is to be COVERED for scenarios and classes; without them every entry is selected.
-    ``entries``: how many are selected, None for any number. ``sha256``: the digest that the file or folder
-    must have; empty for any.
+    ``path``: a file or folder, relative to the folder of the case. ``expect``: the verdicts that selected
+    entries may have. ``select``: patterns such as ``P4 *`` for labels or file names; for a catalogue, of the
+    scenarios and classes that must be COVERED. Without patterns every entry is selected. ``entries``: the
+    required number of selected entries, None for any. ``sha256``: the required digest of the file or folder,
+    empty for any.
     """
 
     path: str
@@ -42,11 +44,11 @@ class Evidence:
 
 
 @dataclass(frozen=True)
-class Element:
-    """An element of a case; ``line`` is that of its table in the file, 0 where roadproof made it."""
+class CaseElement:
+    """An element of a case; ``line`` is that of its table in the file, 0 for derived elements."""
 
     id: str
-    kind: Kind
+    kind: ElementKind
     text: str
     supported_by: tuple[str, ...] = ()
     in_context_of: tuple[str, ...] = ()
@@ -56,24 +58,24 @@ class Element:
 
 
 @dataclass(frozen=True)
-class Case:
-    """A well-formed case (``rules``): elements by id in the order of the file, and the id of the top goal."""
+class AssuranceCase:
+    """A well-formed case (see ``rules``): the elements by id in file order, and the id of the top goal."""
 
     path: Path
     title: str
-    elements: Mapping[str, Element]
+    elements: Mapping[str, CaseElement]
     top: str
 
     @cached_property
     def supported(self) -> Mapping[str, tuple[str, ...]]:
-        """For each element, those that it supports."""
-        found: dict[str, list[str]] = {name: [] for name in self.elements}
+        """The ids of the elements that each element supports, by id."""
+        parents: dict[str, list[str]] = {name: [] for name in self.elements}
         for element in self.elements.values():
             for other in element.supported_by:
-                found[other].append(element.id)
-        return {name: tuple(x) for name, x in found.items()}
+                parents[other].append(element.id)
+        return {name: tuple(x) for name, x in parents.items()}
 
     @property
-    def solutions(self) -> tuple[Element, ...]:
-        """The solutions, in the order of the file."""
-        return tuple(x for x in self.elements.values() if x.kind is Kind.SOLUTION)
+    def solutions(self) -> tuple[CaseElement, ...]:
+        """The solutions in file order."""
+        return tuple(x for x in self.elements.values() if x.kind is ElementKind.SOLUTION)

@@ -1,10 +1,10 @@
-"""Reads an assurance case from TOML; each mistake names the file, the line and the rule.
+"""Reads an assurance case from TOML; each error message names the file, the line and the rule.
 
 The file has a ``title`` and a table for each element, whose name is the element's id. The kind of an element
 is the field with its text: ``goal``, ``strategy``, ``solution``, ``context``, ``assumption`` or
-``justification``. Goals and strategies have ``supported-by`` and ``in-context-of`` (ids), or
-``undeveloped = true``. Solutions have ``evidence`` (a path from the folder of the case) with ``expect``
-(verdicts), ``select`` (patterns of labels), ``entries`` (how many these are) and ``sha256``.
+``justification``. Goals and strategies have ``supported-by`` and ``in-context-of`` (ids), or ``undeveloped =
+true``. Solutions have ``evidence`` (a path from the folder of the case) with ``expect`` (verdicts),
+``select`` (patterns of labels), ``entries`` (how many entries are selected) and ``sha256``.
 """
 
 import re
@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.extensions.assurance.case.case import Case, Element, Evidence, Kind
+from roadproof.extensions.assurance.case.case import AssuranceCase, CaseElement, ElementKind, Evidence
 from roadproof.extensions.assurance.case.rules import top_goal
-from roadproof.library.specification import unknown
+from roadproof.library.specification import unknown_name
 from roadproof.runtime.files import read_text
 from roadproof.verdict import Verdict
 from roadproof.world.models import LARGEST_MODEL, read_toml
@@ -24,7 +24,7 @@ _HEADER = re.compile(r"\s*\[\s*(\"?)([^\"\]]+?)\1\s*\]")
 _KEY = re.compile(r"\s*(\"?)([A-Za-z0-9_-]+)\1\s*=")
 _ID = re.compile(r"[A-Za-z][A-Za-z0-9_.-]{0,30}")
 _DIGEST = re.compile("[0-9a-f]{64}")
-_KINDS = tuple(map(str, Kind))
+_KINDS = tuple(map(str, ElementKind))
 _ARGUING, _OF_SOLUTIONS = (
     ("supported-by", "in-context-of", "undeveloped"),
     ("evidence", "expect", "select", "entries", "sha256"),
@@ -33,8 +33,10 @@ FIELDS = (*_KINDS, *_ARGUING, *_OF_SOLUTIONS)
 LONGEST = 1000  # characters of a text
 
 
-def read_case(path: Path) -> Case:
-    """The case in a file. Raises ``InputError`` for what is no case, or is not well-formed."""
+def read_case(path: Path) -> AssuranceCase:
+    """Return the case of a TOML file. Raises ``InputError`` for a file that is no case or is not
+    well-formed.
+    """
     content = read_toml(path)
     place = _Place(str(path), _lines_of(read_text(path, LARGEST_MODEL, "")))
     title = content.get("title", path.stem)
@@ -45,29 +47,30 @@ def read_case(path: Path) -> Case:
     if not elements:
         raise InputError(f'{path}: there is no element: write a table such as [G1] with goal = "…"')
     top = top_goal(elements, str(path))
-    return Case(path, title, elements, top)
+    return AssuranceCase(path, title, elements, top)
 
 
 @dataclass(frozen=True)
 class _Place:
-    """A file, and the line of each table and field."""
+    """The path of a file, and the line of each table and field."""
 
     path: str
     lines: Mapping[tuple[str, str], int]
 
     def line(self, table: str, field: str = "") -> int:
-        """The line of a field, else that of its table."""
+        """Return the line of a field, or of its table where the field has none."""
         return self.lines.get((table, field)) or self.lines.get((table, ""), 0)
 
-    def error(self, table: str, field: str, told: str) -> InputError:
+    def error(self, table: str, field: str, message: str) -> InputError:
+        """Return an error whose message names the place of a field."""
         line = self.line(table, field)
         where = f"{self.path}, line {line}" if line else self.path
-        return InputError(f"{where}: {told}")
+        return InputError(f"{where}: {message}")
 
 
 def _lines_of(text: str) -> dict[tuple[str, str], int]:
-    """The line of each table and of each field, by their names."""
-    found: dict[tuple[str, str], int] = {}
+    """Return the line of each table and field, by their names; the field of a table itself is ""."""
+    lines: dict[tuple[str, str], int] = {}
     table, closing = "", ""
     for number, line in enumerate(text.splitlines(), 1):
         if closing:
@@ -75,41 +78,41 @@ def _lines_of(text: str) -> dict[tuple[str, str], int]:
             continue
         if header := _HEADER.match(line):
             table = header[2]
-            found.setdefault((table, ""), number)
+            lines.setdefault((table, ""), number)
         elif key := _KEY.match(line):
-            found.setdefault((table, key[2]) if table else (key[2], ""), number)
+            lines.setdefault((table, key[2]) if table else (key[2], ""), number)
             closing = next((x for x in ('"""', "'''") if line.count(x) == 1), "")
-    return found
+    return lines
 
 
-def _element(name: str, table: object, place: _Place) -> Element:
+def _element(name: str, table: object, place: _Place) -> CaseElement:
     if not isinstance(table, Mapping):
         raise place.error(
             name, "", f"unknown field '{name[:60]}': a case has a title and a table per element"
         )
     if not _ID.fullmatch(name):
-        told = "an id begins with a letter and has up to 31 letters, digits, '.', '-' and '_'"
-        raise place.error(name, "", f"'{name[:60]}' is no id: {told}")
+        rule = "an id begins with a letter and has up to 31 letters, digits, '.', '-' and '_'"
+        raise place.error(name, "", f"'{name[:60]}' is no id: {rule}")
     for field in table:
         if field not in FIELDS:
-            raise place.error(name, field, unknown("field", field, FIELDS))
+            raise place.error(name, field, unknown_name("field", field, FIELDS))
     kinds = [x for x in _KINDS if x in table]
     if len(kinds) != 1:
-        said = f"{name} is {' and '.join(kinds)} at once" if kinds else f"{name} has no kind"
-        raise place.error(name, "", f"{said}: write one of {', '.join(_KINDS)} with its text")
-    kind = Kind(kinds[0])
+        problem = f"{name} is {' and '.join(kinds)} at once" if kinds else f"{name} has no kind"
+        raise place.error(name, "", f"{problem}: write one of {', '.join(_KINDS)} with its text")
+    kind = ElementKind(kinds[0])
     for field in table:
-        allowed = _OF_SOLUTIONS if kind is Kind.SOLUTION else () if kind.is_contextual else _ARGUING
+        allowed = _OF_SOLUTIONS if kind is ElementKind.SOLUTION else () if kind.is_contextual else _ARGUING
         if field != kinds[0] and field not in allowed:
             raise place.error(name, field, f"{name} is a {kind}, and a {kind} has no '{field}'")
-    return Element(
+    return CaseElement(
         name,
         kind,
         _text(table, kinds[0], name, place),
         _texts(table, "supported-by", name, place),
         _texts(table, "in-context-of", name, place),
         _flag(table, "undeveloped", name, place),
-        _evidence(table, name, place) if kind is Kind.SOLUTION else None,
+        _evidence(table, name, place) if kind is ElementKind.SOLUTION else None,
         place.line(name),
     )
 
@@ -117,27 +120,27 @@ def _element(name: str, table: object, place: _Place) -> Element:
 def _evidence(table: Mapping[str, object], name: str, place: _Place) -> Evidence:
     if "evidence" not in table:
         raise place.error(name, "", f'solution {name} has no evidence: add evidence = "PATH"')
-    found = Evidence(
+    evidence = Evidence(
         _text(table, "evidence", name, place),
         _texts(table, "expect", name, place),
         _texts(table, "select", name, place),
         _text(table, "sha256", name, place) if "sha256" in table else "",
         _count(table, "entries", name, place),
     )
-    if Path(found.path).is_absolute():
+    if Path(evidence.path).is_absolute():
         raise place.error(name, "evidence", f"evidence of {name}: write the path from the folder of the case")
-    for word in found.expect:
+    for word in evidence.expect:
         if word not in [*map(str, Verdict)]:
-            raise place.error(name, "expect", unknown("verdict", word, [*map(str, Verdict)]))
-    if found.sha256 and not _DIGEST.fullmatch(found.sha256):
+            raise place.error(name, "expect", unknown_name("verdict", word, [*map(str, Verdict)]))
+    if evidence.sha256 and not _DIGEST.fullmatch(evidence.sha256):
         raise place.error(name, "sha256", f"sha256 of {name}: write 64 digits from 0 to f")
-    if not found.expect and not found.sha256:
-        told = 'add expect = "VERDICT", or sha256 of a file that roadproof cannot check'
-        raise place.error(name, "", f"solution {name} expects nothing of its evidence: {told}")
+    if not evidence.expect and not evidence.sha256:
+        remedy = 'add expect = "VERDICT", or sha256 of a file that roadproof cannot check'
+        raise place.error(name, "", f"solution {name} expects nothing of its evidence: {remedy}")
     for field in ("select", "entries"):
-        if field in table and not found.expect:
+        if field in table and not evidence.expect:
             raise place.error(name, field, f"{field} of {name} requires expect")
-    return found
+    return evidence
 
 
 def _text(table: Mapping[str, object], field: str, name: str, place: _Place) -> str:
@@ -150,7 +153,7 @@ def _text(table: Mapping[str, object], field: str, name: str, place: _Place) -> 
 
 
 def _texts(table: Mapping[str, object], field: str, name: str, place: _Place) -> tuple[str, ...]:
-    """A list of texts, or one text alone."""
+    """Return a field that has a list of texts or a single text."""
     value = table.get(field, [])
     items = [value] if isinstance(value, str) else value
     if not isinstance(items, list) or not all(isinstance(x, str) and x for x in items):

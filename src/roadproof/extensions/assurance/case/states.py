@@ -1,17 +1,20 @@
-"""The state of each goal and strategy, which follows from its solutions, and the open points of a case."""
+"""Derives the state of each goal and strategy from its solutions, and the open points of a case."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from graphlib import TopologicalSorter
 
-from roadproof.extensions.assurance.case.case import Case
+from roadproof.extensions.assurance.case.case import AssuranceCase
 
 
-class State(StrEnum):
-    """HOLDS: all evidence below is accepted and has the verdicts expected. BROKEN: some is rejected, damaged
-    or missing, or has another verdict. UNDECIDED: the check of some, or its verdict, is open. UNDEVELOPED: a
-    part of the argument is not written."""
+class ElementState(StrEnum):
+    """The state of a goal, strategy or solution, ordered from best to worst.
+
+    HOLDS: all evidence below is accepted and has the expected verdicts. UNDEVELOPED: a part of the argument
+    is not written. UNDECIDED: a check or a verdict is open. BROKEN: evidence is rejected, damaged or missing,
+    or has another verdict.
+    """
 
     HOLDS = "holds"
     UNDEVELOPED = "undeveloped"
@@ -19,54 +22,59 @@ class State(StrEnum):
     BROKEN = "broken"
 
 
-GRAVITY: tuple[State, ...] = tuple(State)
-"""From the best to the worst."""
+GRAVITY: tuple[ElementState, ...] = tuple(ElementState)
+"""The states from the best to the worst."""
 
 
-def worst(states: Mapping[str, State], names: tuple[str, ...]) -> State:
-    """The worst state of some elements."""
+def worst(states: Mapping[str, ElementState], names: tuple[str, ...]) -> ElementState:
+    """Return the worst state of the elements ``names``."""
     return max((states[x] for x in names), key=GRAVITY.index)
 
 
-def propagate(case: Case, of_solutions: Mapping[str, State]) -> dict[str, State]:
-    """The state of each goal, strategy and solution: the worst below it; undeveloped where that is marked."""
+def propagate(case: AssuranceCase, of_solutions: Mapping[str, ElementState]) -> dict[str, ElementState]:
+    """Return the state of each goal, strategy and solution: the worst state below it.
+
+    Elements without support are UNDEVELOPED.
+    """
     order = TopologicalSorter({x.id: x.supported_by for x in case.elements.values()}).static_order()
-    found: dict[str, State] = {}
+    states: dict[str, ElementState] = {}
     for name in order:
         element = case.elements[name]
         if element.kind.is_contextual:
             continue
         if name in of_solutions:
-            found[name] = of_solutions[name]
+            states[name] = of_solutions[name]
         else:
-            found[name] = worst(found, element.supported_by) if element.supported_by else State.UNDEVELOPED
-    return found
+            states[name] = (
+                worst(states, element.supported_by) if element.supported_by else ElementState.UNDEVELOPED
+            )
+    return states
 
 
 @dataclass(frozen=True)
 class OpenPoint:
-    """A solution or undeveloped element that does not hold, and the elements from there to the top goal.
+    """A solution or undeveloped element that does not hold, with a path from it to the top goal.
 
-    ``others``: the number of further ways to the top.
+    ``others``: the number of further paths.
     """
 
     element: str
-    state: State
+    state: ElementState
     path: tuple[str, ...]
     others: int = 0
 
 
-def open_points(case: Case, states: Mapping[str, State]) -> Iterator[OpenPoint]:
-    """The elements that keep the top goal from holding, the worst first."""
-    leaves = [x for x, state in states.items() if state is not State.HOLDS]
+def open_points(case: AssuranceCase, states: Mapping[str, ElementState]) -> Iterator[OpenPoint]:
+    """Yield the elements that prevent the top goal from holding, the worst first."""
+    leaves = [x for x, state in states.items() if state is not ElementState.HOLDS]
     ends = [x for x in case.elements if x in leaves and not case.elements[x].supported_by]
     ways = _ways(case)
     for name in sorted(ends, key=lambda x: -GRAVITY.index(states[x])):
         yield OpenPoint(name, states[name], _path(case, name), ways[name] - 1)
 
 
-def _path(case: Case, name: str) -> tuple[str, ...]:
-    """A shortest way from an element to the top."""
+def _path(case: AssuranceCase, name: str) -> tuple[str, ...]:
+    """Return a shortest path from an element up to the top goal."""
     came_from: dict[str, str | None] = {name: None}
     waiting = [name]
     for x in waiting:
@@ -82,10 +90,10 @@ def _path(case: Case, name: str) -> tuple[str, ...]:
     return tuple(reversed(path))
 
 
-def _ways(case: Case) -> dict[str, int]:
-    """The number of ways from each element to the top."""
+def _ways(case: AssuranceCase) -> dict[str, int]:
+    """Return the number of paths from each element up to the top goal."""
     order = TopologicalSorter(case.supported).static_order()
-    found: dict[str, int] = {}
+    counts: dict[str, int] = {}
     for name in order:
-        found[name] = 1 if name == case.top else sum(found[x] for x in case.supported[name])
-    return found
+        counts[name] = 1 if name == case.top else sum(counts[x] for x in case.supported[name])
+    return counts

@@ -1,4 +1,4 @@
-"""``roadproof assurance``: an argument in Goal Structuring Notation, with its evidence checked again."""
+"""``roadproof assurance``: check an argument in Goal Structuring Notation against its evidence."""
 
 import argparse
 from pathlib import Path
@@ -8,7 +8,7 @@ from roadproof.extensions.assurance.settings import Assurance
 from roadproof.frontends.cli.options import print_answer
 from roadproof.frontends.cli.progress import Counter, clear
 from roadproof.frontends.settings.flags import read_keywords
-from roadproof.runtime.files import write_whole
+from roadproof.runtime.files import write_atomic
 from roadproof.verdict import ExitCode
 
 SUMMARY = "check an assurance case in GSN against its evidence"
@@ -39,10 +39,10 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError("name a CASE, or --template NAME with --evidence DIR,… and --out FILE")
     from roadproof.extensions.assurance.assuring import assurance
 
-    found = assurance(args.case, **read_keywords(args, Assurance) | {"progress": Counter()})
+    report = assurance(args.case, **read_keywords(args, Assurance) | {"progress": Counter()})
     clear()
-    print_answer(found, args.json)
-    return found.exit_code
+    print_answer(report, args.json)
+    return report.exit_code
 
 
 def _write(args: argparse.Namespace) -> int:
@@ -51,6 +51,6 @@ def _write(args: argparse.Namespace) -> int:
     if args.case is not None or args.out is None or args.out.suffix != ".toml":
         raise UsageError("--template requires --out NAME.toml, and no CASE")
     text = fill_template(args.template, [Path(x) for x in args.evidence], args.out.parent)
-    write_whole(args.out, text.encode())
+    write_atomic(args.out, text.encode())
     print(f"written to {args.out}; `roadproof assurance {args.out}` checks it")
     return ExitCode.AS_EXPECTED

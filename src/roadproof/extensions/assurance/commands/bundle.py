@@ -1,9 +1,9 @@
-"""``roadproof bundle``: evidence with all that checks it again, in one file for auditors."""
+"""``roadproof bundle``: pack evidence, and everything that checks it again, into one file for auditors."""
 
 import argparse
 from pathlib import Path
 
-from roadproof.extensions.assurance.settings import Bundle
+from roadproof.extensions.assurance.settings import BundleSettings
 from roadproof.frontends.cli.options import print_answer
 from roadproof.frontends.cli.progress import Counter, clear
 from roadproof.frontends.settings.flags import read_keywords, section
@@ -27,7 +27,7 @@ openssl pkeyutl -verify -pubin -inkey public.pem -rawin -in safety.tar.gz -sigfi
 It runs roadproof assurance and trace on cases and requirements inside, and fails when these fail.
 Exit code: the gravest of roadproof check, assurance and trace.
 """
-OPTIONS = Bundle
+OPTIONS = BundleSettings
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,7 +40,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from roadproof.extensions.assurance.bundling import bundle
 
-    found = bundle(*args.results, out=args.out, **read_keywords(args, Bundle) | {"progress": Counter()})
+    written = bundle(
+        *args.results, out=args.out, **read_keywords(args, BundleSettings) | {"progress": Counter()}
+    )
     clear()
-    print_answer(found, args.json)
-    return found.exit_code
+    print_answer(written, args.json)
+    return written.exit_code

@@ -1,4 +1,4 @@
-"""``roadproof trace``: which requirements are shown, by evidence that is checked again."""
+"""``roadproof trace``: check which requirements are shown by evidence."""
 
 import argparse
 from pathlib import Path
@@ -55,17 +55,17 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError("name a file of requirements, or two answers with --baseline A B")
     if args.baseline is not None:
         if args.accept or any(x is not None for x in (args.out, args.reqif, args.junit, args.sarif)):
-            told = "omit --accept, --out, --reqif, --junit and --sarif"
-            raise UsageError(f"--baseline compares saved answers: {told}")
+            remedy = "omit --accept, --out, --reqif, --junit and --sarif"
+            raise UsageError(f"--baseline compares saved answers: {remedy}")
         changes = requirement_changes(*args.baseline)
         print_answer(changes, args.json)
         return changes.exit_code
-    found = requirements(args.file, **read_keywords(args, Requirements) | {"progress": Counter()})
+    traced = requirements(args.file, **read_keywords(args, Requirements) | {"progress": Counter()})
     clear()
     if args.out is not None:
-        found.save(args.out)
+        traced.save(args.out)
     if args.reqif is not None:
-        found.save_reqif(args.reqif)
-    write_build_results(args, found)
-    print_answer(found, args.json)
-    return found.exit_code
+        traced.save_reqif(args.reqif)
+    write_build_results(args, traced)
+    print_answer(traced, args.json)
+    return traced.exit_code

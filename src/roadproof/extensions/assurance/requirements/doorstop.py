@@ -1,26 +1,26 @@
-"""Requirements of Doorstop: a folder with ``.doorstop.yml`` and an item in each other YAML file.
+"""Reads requirements of Doorstop: a folder with ``.doorstop.yml`` and one item in each other YAML file.
 
-The name of a file is the UID of its item. Links to evidence are further attributes: claims, scenarios,
-tests, drivers, plates and evidence, each a text or a list.
+The name of a file is the UID of its item. Links to evidence are further attributes: claims, scenarios, tests,
+drivers, plates and evidence, each a text or a list.
 """
 
 from collections.abc import Mapping
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.extensions.assurance.answers.trace import Position
-from roadproof.extensions.assurance.requirements.requirement import Requirement, Requirements, split_links
+from roadproof.extensions.assurance.answers.trace import RequirementPlace
+from roadproof.extensions.assurance.requirements.requirement import Requirement, RequirementSet, split_links
 from roadproof.extensions.assurance.requirements.yaml_file import Item, Value, read_yaml
 
 SETTINGS = ".doorstop.yml"
 
 
-def read_doorstop(folder: Path) -> Requirements:
-    """The active items of a folder and of the folders in it. Raises ``InputError``."""
+def read_doorstop(folder: Path) -> RequirementSet:
+    """Return the active normative items of a folder and its subfolders. Raises ``InputError``."""
     homes = sorted(x.parent for x in folder.rglob(SETTINGS))
     if not homes:
         raise InputError(f"{folder}: there is no {SETTINGS} in it, so it is no folder of Doorstop")
-    found: list[Requirement] = []
+    requirements: list[Requirement] = []
     notes: list[str] = []
     for path in (x for home in homes for x in sorted(home.glob("*.yml")) if x.name != SETTINGS):
         item = read_yaml(path)
@@ -29,8 +29,8 @@ def read_doorstop(folder: Path) -> Requirements:
         elif _is_off(item, "normative"):
             notes.append(f"{path}: the item is not normative, such as a heading, and is left out")
         else:
-            found.append(_requirement(path, item))
-    return Requirements(folder, tuple(found), notes=tuple(notes))
+            requirements.append(_requirement(path, item))
+    return RequirementSet(folder, tuple(requirements), notes=tuple(notes))
 
 
 def _is_off(item: Mapping[str, Value], name: str) -> bool:
@@ -42,7 +42,7 @@ def _requirement(path: Path, item: Mapping[str, Value]) -> Requirement:
     return Requirement(
         path.stem,
         _text(item.get("text", "")),
-        Position(file=str(path)),
+        RequirementPlace(file=str(path)),
         _text(item.get("header", "")),
         tuple(x.text for x in _listed(item.get("links", ()))),
         split_links({name: "\n".join(map(_written, _listed(value))) for name, value in item.items()}),

@@ -1,4 +1,4 @@
-"""Which evidence shows which link, and the state that follows from it."""
+"""Finds the evidence for each link of a requirement, and derives the state of the link."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,7 +19,7 @@ from roadproof.library.elaborate import apply_definition
 from roadproof.library.scenario_references import read_query
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.rewrite import without_names
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.reasons import NO_REASON, Reason, ReasonKind
 
 _LABEL = re.compile(r"[A-Za-z][\w-]*( scenario \d+)? [A-Za-z][\w-]*")
 _DRIVER = re.compile(r"(?P<test>.+): (?P<model>\w+) (?P<side>preventable|unpreventable)")
@@ -33,12 +33,14 @@ _SHOWN = {
     "REFUTED": LinkState.REFUTED,
     "GAPS": LinkState.REFUTED,
 }
-"""What an accepted verdict says of a file of evidence; all others are not decided."""
+"""The state that an accepted verdict gives a file of evidence; all other verdicts are undecided."""
 
 
 @dataclass(frozen=True)
 class Target:
-    """A link as it is read: ``meaning`` None where its name is no formula; ``specification``: of its set."""
+    """A parsed link; ``meaning``: None for a name that is no formula; ``specification``: the definitions of
+    its set.
+    """
 
     link: Link
     specification: Specification
@@ -46,8 +48,8 @@ class Target:
 
 
 @dataclass(frozen=True)
-class Shown:
-    """What one piece of evidence says of a link."""
+class LinkFinding:
+    """The state that one piece of evidence gives a link."""
 
     evidence: CheckedEvidence
     state: LinkState
@@ -58,7 +60,9 @@ Values: TypeAlias = Mapping[str, Fraction]
 
 
 def read_target(link: Link, home: Specification, source: str) -> Target:
-    """A link read with the definitions of a trace. Raises ``InputError``, which names ``source``."""
+    """Parse a link under the definitions of a trace. Raises ``InputError``, whose message names
+    ``source``.
+    """
     if link.kind == "claim":
         try:
             return Target(link, home, meaning_of(home, link.target, source))
@@ -83,7 +87,10 @@ def read_target(link: Link, home: Specification, source: str) -> Target:
 
 
 def _scenario(target: str, home: Specification, source: str) -> tuple[Query, Specification]:
-    """A scenario by number, number@set, name or definition, or a formula. Raises ``InputError``."""
+    """Return the query and definitions of a scenario: number, number@set, name, definition or formula.
+
+    Raises ``InputError``.
+    """
     word, _, set_name = target.partition("@")
     if set_name in home.library.sets and re.fullmatch(r"\d+|\w+", word):
         home, target = home.in_set(set_name), word
@@ -92,138 +99,157 @@ def _scenario(target: str, home: Specification, source: str) -> tuple[Query, Spe
     return read_query(home, target, source)[1], home
 
 
-def shown_by(
+def findings_of_link(
     target: Target, evidence: Sequence[CheckedEvidence], values: Values, folder: Path
-) -> list[Shown]:
-    """What the evidence says of a link. ``values``: of all parameters; paths begin in ``folder``."""
+) -> list[LinkFinding]:
+    """Return the findings about a link.
+
+    ``values``: the values of all parameters; ``folder``: where relative paths of links start.
+    """
     match target.link.kind:
         case "claim" | "scenario":
-            found = _of_formula(target, evidence)
+            findings = _findings_of_formula(target, evidence)
         case "test":
-            found = _of_test(target.link.target, evidence)
+            findings = _findings_of_test(target.link.target, evidence)
         case "driver":
-            found = _of_driver(driver_link(target.link), evidence)
+            findings = _findings_of_driver(driver_link(target.link), evidence)
         case "plate":
-            found = (_by_itself(x) for x in evidence if _is_plate(x, target.link.target))
+            findings = (_finding_of_file(x) for x in evidence if _is_plate(x, target.link.target))
         case "evidence":
             place = (folder / target.link.target).resolve()
-            found = (_by_itself(x) for x in evidence if _is_at(x, place))
-    return [_with_values(x, values) for x in found]
+            findings = (_finding_of_file(x) for x in evidence if _is_at(x, place))
+        case _:
+            assert_never(target.link.kind)
+    return [_stale_if_values_differ(x, values) for x in findings]
 
 
-def combined(kind: str, found: Sequence[Shown]) -> tuple[LinkState, Reason]:
-    """The state of a link. A refutation counts before all else, then evidence that is rejected.
+def combined_state(kind: str, findings: Sequence[LinkFinding]) -> tuple[LinkState, Reason]:
+    """Return the state of a link and the reason for it.
 
-    Of driver models, plates and files all parts must be shown, of other links one is enough.
+    A refutation counts first, then rejected evidence. Links to driver models, plates and files need all of
+    their evidence, other links need one piece.
     """
-    if not found:
-        return LinkState.MISSING, Why.NO_EVIDENCE()
-    worst = max(found, key=lambda x: x.state.rank)
+    if not findings:
+        return LinkState.MISSING, ReasonKind.NO_EVIDENCE()
+    worst = max(findings, key=lambda x: x.state.rank)
     if worst.state in (LinkState.REFUTED, LinkState.REJECTED) or kind in ("driver", "plate", "evidence"):
         return worst.state, worst.reason
-    best = min(found, key=lambda x: x.state.rank)
+    best = min(findings, key=lambda x: x.state.rank)
     return best.state, best.reason
 
 
-def _not_accepted(x: CheckedEvidence) -> Shown | None:
-    """What evidence that is not accepted says; None where it is."""
-    finding = x.finding
+def _not_accepted(checked: CheckedEvidence) -> LinkFinding | None:
+    """Return the finding for evidence that is not accepted, None for accepted evidence."""
+    finding = checked.finding
     if finding.outcome is Acceptance.ACCEPTED:
         return None
     if finding.outcome is Acceptance.UNDECIDED:
-        return Shown(x, LinkState.UNKNOWN, finding.reason)
+        return LinkFinding(checked, LinkState.UNKNOWN, finding.reason)
     state = LinkState.STALE if finding.reason.kind in STALE else LinkState.REJECTED
-    return Shown(x, state, finding.reason)
+    return LinkFinding(checked, state, finding.reason)
 
 
-def _by_itself(x: CheckedEvidence) -> Shown:
-    """What evidence says of itself."""
-    wrong = _not_accepted(x)
+def _finding_of_file(checked: CheckedEvidence) -> LinkFinding:
+    """Return the state that a piece of evidence gives to a link to itself."""
+    wrong = _not_accepted(checked)
     if wrong is not None:
         return wrong
-    if x.remark:
-        return Shown(x, LinkState.REFUTED, Why.TOLD(x.remark))
-    state = _SHOWN.get(x.finding.verdict, LinkState.UNKNOWN)
-    return Shown(x, state, NO_REASON if state.is_shown else Why.TOLD(x.finding.verdict))
+    if checked.remark:
+        return LinkFinding(checked, LinkState.REFUTED, ReasonKind.TOLD(checked.remark))
+    state = _SHOWN.get(checked.finding.verdict, LinkState.UNKNOWN)
+    return LinkFinding(
+        checked, state, NO_REASON if state.is_shown else ReasonKind.TOLD(checked.finding.verdict)
+    )
 
 
-def _of_formula(target: Target, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
+def _findings_of_formula(target: Target, evidence: Sequence[CheckedEvidence]) -> Iterator[LinkFinding]:
+    """Yield the findings whose claim is the formula or label of a link, or its negation."""
     label = " ".join(target.link.target.split())
-    for x in evidence:
-        if x.finding.kind == "test":
+    for checked in evidence:
+        if checked.finding.kind == "test":
             continue
         by_label = (
-            target.meaning is None and x.finding.subject is SubjectKind.PROPERTY and x.finding.name == label
+            target.meaning is None
+            and checked.finding.subject is SubjectKind.PROPERTY
+            and checked.finding.name == label
         )
-        if by_label or (target.meaning is not None and x.meaning == target.meaning):
-            yield _not_accepted(x) or _same(target.link.kind, x)
-        elif target.meaning is not None and x.meaning == target.meaning.opposite:
-            yield from _opposite(target.link.kind, x)
+        if by_label or (target.meaning is not None and checked.meaning == target.meaning):
+            yield _not_accepted(checked) or _finding_of_formula(target.link.kind, checked)
+        elif target.meaning is not None and checked.meaning == target.meaning.opposite:
+            yield from _findings_of_opposite(target.link.kind, checked)
 
 
-def _same(kind: str, x: CheckedEvidence) -> Shown:
-    """What accepted evidence of the very formula says."""
-    verdict, reason = x.finding.verdict, x.finding.reason
+def _finding_of_formula(kind: str, checked: CheckedEvidence) -> LinkFinding:
+    """Return the finding for accepted evidence about the formula itself."""
+    verdict, reason = checked.finding.verdict, checked.finding.reason
     if kind == "claim":
         if verdict == "IMPOSSIBLE":
-            return Shown(x, LinkState.REFUTED, Why.NEVER_HOLDS())
+            return LinkFinding(checked, LinkState.REFUTED, ReasonKind.NEVER_HOLDS())
         if verdict == "WITNESSED":
-            return Shown(x, LinkState.UNKNOWN, Why.ONE_DRIVE())
+            return LinkFinding(checked, LinkState.UNKNOWN, ReasonKind.ONE_DRIVE())
         if verdict == "REFUTED":
-            return Shown(x, LinkState.REFUTED, Why.TRACE_REFUTES())
+            return LinkFinding(checked, LinkState.REFUTED, ReasonKind.TRACE_REFUTES())
     elif verdict == "IMPOSSIBLE":
-        return Shown(x, LinkState.REFUTED, Why.NO_DRIVE_SHOWS())
+        return LinkFinding(checked, LinkState.REFUTED, ReasonKind.NO_DRIVE_SHOWS())
     elif verdict == "REFUTED":
-        return Shown(x, LinkState.UNKNOWN, Why.OPPOSITE_DRIVE())
+        return LinkFinding(checked, LinkState.UNKNOWN, ReasonKind.OPPOSITE_DRIVE())
     if verdict == "VACUOUS":
-        reason = Why.VACUOUS()
+        reason = ReasonKind.VACUOUS()
     state = _SHOWN.get(verdict, LinkState.UNKNOWN)
-    told = Why.VERDICT(verdict, reason) if reason else Why.TOLD(verdict)
-    return Shown(x, state, NO_REASON if state.is_shown else told)
+    explanation = ReasonKind.VERDICT(verdict, reason) if reason else ReasonKind.TOLD(verdict)
+    return LinkFinding(checked, state, NO_REASON if state.is_shown else explanation)
 
 
-def _opposite(kind: str, x: CheckedEvidence) -> Iterator[Shown]:
-    """What evidence of the opposite says, where it is accepted."""
-    if x.finding.outcome is not Acceptance.ACCEPTED:
+def _findings_of_opposite(kind: str, checked: CheckedEvidence) -> Iterator[LinkFinding]:
+    """Yield the finding for accepted evidence about the negated formula."""
+    if checked.finding.outcome is not Acceptance.ACCEPTED:
         return
-    if x.finding.verdict == "PROVED":
-        yield Shown(
-            x, LinkState.REFUTED, Why.NO_DRIVE_SHOWS() if kind == "scenario" else Why.OPPOSITE_PROVED()
+    if checked.finding.verdict == "PROVED":
+        yield LinkFinding(
+            checked,
+            LinkState.REFUTED,
+            ReasonKind.NO_DRIVE_SHOWS() if kind == "scenario" else ReasonKind.OPPOSITE_PROVED(),
         )
-    elif x.finding.verdict == "WITNESSED" and kind == "claim":
-        yield Shown(x, LinkState.REFUTED, Why.DRIVE_REFUTES())
+    elif checked.finding.verdict == "WITNESSED" and kind == "claim":
+        yield LinkFinding(checked, LinkState.REFUTED, ReasonKind.DRIVE_REFUTES())
 
 
-def _of_test(name: str, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
-    """What a catalogue says of a test; without one, of the drive whose file has its name."""
-    mine = [
-        x
-        for x in evidence
-        if x.finding.subject in (SubjectKind.TEST, SubjectKind.RUN) and x.finding.name == name
+def _findings_of_test(name: str, evidence: Sequence[CheckedEvidence]) -> Iterator[LinkFinding]:
+    """Yield the findings of a catalogue about a test; without a catalogue, of the drive whose file has its
+    name.
+    """
+    of_test = [
+        checked
+        for checked in evidence
+        if checked.finding.subject in (SubjectKind.TEST, SubjectKind.RUN) and checked.finding.name == name
     ]
-    if not mine:
-        mine = [x for x in evidence if x.finding.kind == "drive" and Path(x.finding.where).stem == name]
-    for x in mine:
-        wrong = _not_accepted(x)
+    if not of_test:
+        of_test = [
+            checked
+            for checked in evidence
+            if checked.finding.kind == "drive" and Path(checked.finding.where).stem == name
+        ]
+    for checked in of_test:
+        wrong = _not_accepted(checked)
         if wrong is not None:
             yield wrong
-        elif x.remark:
-            yield Shown(x, LinkState.REFUTED, Why.TOLD(x.remark))
-        elif x.finding.shows == "unreadable":
-            yield Shown(x, LinkState.REJECTED, Why.TOLD(x.finding.claim))
-        elif x.finding.shows == "nothing":
-            yield Shown(x, LinkState.UNKNOWN, Why.SHOWS_NONE())
-        elif x.finding.verdict == "READ":
-            yield Shown(x, LinkState.UNKNOWN, Why.NO_DRIVE_OF_FORMULA())
-        elif x.finding.verdict == "IMPOSSIBLE":
-            yield Shown(x, LinkState.REFUTED, Why.NO_DRIVE_SHOWS())
+        elif checked.remark:
+            yield LinkFinding(checked, LinkState.REFUTED, ReasonKind.TOLD(checked.remark))
+        elif checked.finding.shows == "unreadable":
+            yield LinkFinding(checked, LinkState.REJECTED, ReasonKind.TOLD(checked.finding.claim))
+        elif checked.finding.shows == "nothing":
+            yield LinkFinding(checked, LinkState.UNKNOWN, ReasonKind.SHOWS_NONE())
+        elif checked.finding.verdict == "READ":
+            yield LinkFinding(checked, LinkState.UNKNOWN, ReasonKind.NO_DRIVE_OF_FORMULA())
+        elif checked.finding.verdict == "IMPOSSIBLE":
+            yield LinkFinding(checked, LinkState.REFUTED, ReasonKind.NO_DRIVE_SHOWS())
         else:
-            yield Shown(x, _SHOWN.get(x.finding.verdict, LinkState.UNKNOWN))
+            yield LinkFinding(checked, _SHOWN.get(checked.finding.verdict, LinkState.UNKNOWN))
 
 
 @dataclass(frozen=True)
 class DriverLink:
-    """That a driver model in place of SV prevents the collision of a test, or does not."""
+    """The statement that a driver model in place of SV prevents the collision of a test, or does not."""
 
     test: str
     model: str
@@ -231,36 +257,42 @@ class DriverLink:
 
 
 def driver_link(link: Link) -> DriverLink:
-    """Return what a link such as ``CUT-1: careful preventable`` says. Raises ``InputError``."""
-    read = _DRIVER.fullmatch(" ".join(link.target.split()))
-    if read is None or read["model"] not in MODELS:
+    """Return the test, model and side of a link such as ``CUT-1: careful preventable``. Raises
+    ``InputError``.
+    """
+    match = _DRIVER.fullmatch(" ".join(link.target.split()))
+    if match is None or match.group("model") not in MODELS:
         raise InputError(
             f"drivers='{link.target[:60]}': write TEST: MODEL preventable, or unpreventable; models are "
             f"{', '.join(MODELS)}"
         )
-    return DriverLink(read["test"], read["model"], read["side"])
+    return DriverLink(*match.group("test", "model", "side"))
 
 
-def _of_driver(link: DriverLink, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
-    """What a catalogue says of a test under a driver model, in each scenario that it shows."""
-    for x in evidence:
-        wrong = _not_accepted(x)
-        if wrong is not None and _is_driven(x, link.test, link.model):
+def _findings_of_driver(link: DriverLink, evidence: Sequence[CheckedEvidence]) -> Iterator[LinkFinding]:
+    """Yield the decisions of a catalogue about a test under a driver model, one for each scenario that it
+    shows.
+    """
+    for checked in evidence:
+        wrong = _not_accepted(checked)
+        if wrong is not None and _is_driven(checked, link.test, link.model):
             yield wrong
-        if x.finding.subject is not SubjectKind.TEST or x.finding.name != link.test:
+        if checked.finding.subject is not SubjectKind.TEST or checked.finding.name != link.test:
             continue
         if wrong is not None:
             yield wrong
             continue
-        for decided in x.finding.drivers:
+        for decided in checked.finding.drivers:
             if decided.driver == link.model:
-                yield Shown(x, _side_shown(decided.side, link.side), _side_reason(decided, link.side))
+                yield LinkFinding(
+                    checked, _side_state(decided.side, link.side), _side_reason(decided, link.side)
+                )
 
 
-def _side_shown(side: TestedSide, wanted: str) -> LinkState:
+def _side_state(side: TestedSide, required: str) -> LinkState:
     match side:
         case "preventable" | "unpreventable":
-            return LinkState.WITNESSED if side == wanted else LinkState.REFUTED
+            return LinkState.WITNESSED if side == required else LinkState.REFUTED
         case "partly":
             return LinkState.REFUTED
         case "not foreseen" | "undecided":
@@ -269,50 +301,56 @@ def _side_shown(side: TestedSide, wanted: str) -> LinkState:
             assert_never(side)
 
 
-def _side_reason(decided: DriverSide, wanted: str) -> Reason:
-    return NO_REASON if decided.side == wanted else Why.DRIVER_SIDE(decided.scenario, decided.side)
+def _side_reason(decided: DriverSide, required: str) -> Reason:
+    return NO_REASON if decided.side == required else ReasonKind.DRIVER_SIDE(decided.scenario, decided.side)
 
 
-def is_beside(link: Link, x: CheckedEvidence) -> bool:
-    """Whether accepted evidence is about the test of a link, but does not show the link by itself.
+def is_related(link: Link, checked: CheckedEvidence) -> bool:
+    """Return whether accepted evidence is about the test of a link, but does not show the link by itself.
 
-    Such as that ``CUT-1 excludes scenario_4``, or the drive of a driver model in the test.
+    Examples: ``CUT-1 excludes scenario_4``, or the drive of a driver model in the test.
     """
-    if x.finding.outcome is not Acceptance.ACCEPTED:
+    if checked.finding.outcome is not Acceptance.ACCEPTED:
         return False
     match link.kind:
         case "test":
-            of_test = x.finding.subject in OF_TESTS and x.finding.name == link.target
-            return of_test or any(_is_driven(x, link.target, model) for model in MODELS)
+            of_test = checked.finding.subject in OF_TESTS and checked.finding.name == link.target
+            return of_test or any(_is_driven(checked, link.target, model) for model in MODELS)
         case "driver":
             about = driver_link(link)
-            return _is_driven(x, about.test, about.model)
+            return _is_driven(checked, about.test, about.model)
         case "claim" | "scenario" | "plate" | "evidence":
             return False
         case _:
             assert_never(link.kind)
 
 
-def _is_driven(x: CheckedEvidence, test: str, model: str) -> bool:
-    return x.finding.subject is SubjectKind.DRIVEN and x.finding.name == f"{test}: {model}"
+def _is_driven(checked: CheckedEvidence, test: str, model: str) -> bool:
+    return checked.finding.subject is SubjectKind.DRIVEN and checked.finding.name == f"{test}: {model}"
 
 
-def _is_plate(x: CheckedEvidence, name: str) -> bool:
-    return x.finding.subject is SubjectKind.PLATE and x.finding.name == name
+def _is_plate(checked: CheckedEvidence, name: str) -> bool:
+    return checked.finding.subject is SubjectKind.PLATE and checked.finding.name == name
 
 
-def _is_at(x: CheckedEvidence, place: Path) -> bool:
-    here = x.path.resolve()
+def _is_at(checked: CheckedEvidence, place: Path) -> bool:
+    here = checked.path.resolve()
     return here == place or place in here.parents
 
 
-def _with_values(x: Shown, values: Values) -> Shown:
-    """The same, stale where its drive was judged with other values of parameters than are in force."""
-    if not (x.state.is_shown and x.evidence.values):
-        return x
-    library = x.evidence.specification.library
+def _stale_if_values_differ(finding: LinkFinding, values: Values) -> LinkFinding:
+    """Return the finding, as STALE where its drive was judged with other parameter values than
+    are in force.
+    """
+    if not (finding.state.is_shown and finding.evidence.values):
+        return finding
+    library = finding.evidence.specification.library
     here = default_values(library) | dict(values)
     other = [
-        f"{n} = {v} (now {here[n]})" for n, v in sorted(x.evidence.values.items()) if here.get(n, v) != v
+        f"{n} = {v} (now {here[n]})"
+        for n, v in sorted(finding.evidence.values.items())
+        if here.get(n, v) != v
     ]
-    return Shown(x.evidence, LinkState.STALE, Why.JUDGED_WITH(", ".join(other))) if other else x
+    if not other:
+        return finding
+    return LinkFinding(finding.evidence, LinkState.STALE, ReasonKind.JUDGED_WITH(", ".join(other)))

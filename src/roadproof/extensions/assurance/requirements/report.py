@@ -1,48 +1,43 @@
-"""Requirements with the evidence that shows each, as text, tables and Markdown."""
+"""Presents traced requirements as terminal text, tables and Markdown."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from roadproof.evidence.finding import Acceptance
 from roadproof.extensions.assurance.answers.trace import (
-    Answer,
     LinkedEvidence,
     LinkState,
+    TraceData,
     TracedLink,
     TracedRequirement,
 )
-from roadproof.extensions.assurance.answers.trace_changes import Change, Changes
+from roadproof.extensions.assurance.answers.trace_changes import TraceChange, TraceChangesData
 from roadproof.frontends.report.sheet import Column, Sheet, aligned, excerpt
 from roadproof.runtime.records import dataclass
 
 MOST_LINES = 20
-"""Pieces of evidence without a requirement that a terminal lists."""
+"""The number of pieces of evidence without a requirement that a terminal lists."""
 
 
 @dataclass(frozen=True)
-class Line:
-    """A link with its requirement; ``link`` None: the requirement has none."""
+class LinkRow:
+    """A link with its requirement; ``link``: None for a requirement without links."""
 
     requirement: TracedRequirement
     link: TracedLink | None
 
     @property
     def state(self) -> LinkState:
-        """That of the link, else of the requirement."""
+        """The state of the link, or of a requirement without links."""
         return self.requirement.state if self.link is None else self.link.state
 
-    @property
-    def told(self) -> str:
-        """The link in words."""
-        return "" if self.link is None else f"{self.link.kind} {' '.join(self.link.target.split())}"
 
-
-def sheet_of(answer: Answer) -> Sheet[Line]:
-    """An entry for each link, and for each requirement without one."""
+def sheet_of(answer: TraceData) -> Sheet[LinkRow]:
+    """Return a table with a row for each link, and for each requirement without links."""
     return Sheet(
         (
             Column("requirement", lambda x: x.requirement.id, look="strong"),
-            Column("title", lambda x: _named(x.requirement)),
+            Column("title", lambda x: _title_of(x.requirement)),
             Column("kind", lambda x: "" if x.link is None else x.link.kind),
             Column("target", lambda x: "" if x.link is None else x.link.target, look="code"),
             Column("state", lambda x: x.state, look="verdict"),
@@ -50,16 +45,16 @@ def sheet_of(answer: Answer) -> Sheet[Line]:
             Column("evidence", lambda x: "; ".join(_files(x.link)), "csv"),
             Column("line", lambda x: x.requirement.place.line, "csv"),
         ),
-        [Line(x, link) for x in answer.requirements for link in (x.links or (None,))],
+        [LinkRow(x, link) for x in answer.requirements for link in (x.links or (None,))],
     )
 
 
-def _named(x: TracedRequirement) -> str:
+def _title_of(x: TracedRequirement) -> str:
     return x.title or excerpt(" ".join(x.text.split()), 70)
 
 
 def reason_of(link: TracedLink | None) -> str:
-    """Why a link is not shown, with what changed below it."""
+    """Return the reason why a link is not shown, with the parts that changed."""
     if link is None:
         return ""
     return "; ".join(filter(None, (link.reason, ", ".join(link.changes))))
@@ -69,23 +64,23 @@ def _files(link: TracedLink | None) -> list[str]:
     return [] if link is None else [*dict.fromkeys(x.where for x in link.evidence)]
 
 
-def counted(answer: Answer) -> str:
-    """How many requirements are in each state."""
+def counted(answer: TraceData) -> str:
+    """Return a sentence with the number of requirements in each state."""
     counts = Counter(x.state for x in answer.requirements)
     shown = sum(n for state, n in counts.items() if state.is_shown)
-    told = ", ".join(f"{counts[x]} {x}" for x in LinkState if counts[x])
-    return f"{shown} of {len(answer.requirements)} requirements shown: {told}"
+    states = ", ".join(f"{counts[x]} {x}" for x in LinkState if counts[x])
+    return f"{shown} of {len(answer.requirements)} requirements shown: {states}"
 
 
-def as_lines(answer: Answer) -> list[str]:
-    """A line for each requirement with its links below, evidence without a requirement, and counts."""
+def as_lines(answer: TraceData) -> list[str]:
+    """Return a line for each requirement with its links below, evidence without a requirement, and counts."""
     rows: list[list[str]] = []
     for x in answer.requirements:
-        rows.append([str(x.state), x.id, _named(x)])
+        rows.append([str(x.state), x.id, _title_of(x)])
         for link in x.links:
             reason = excerpt(reason_of(link), 160)
-            told = excerpt(f"{link.kind} {' '.join(link.target.split())}", 90)
-            rows.append(["", "", f"  {link.state}: {told}" + (f" ({reason})" if reason else "")])
+            target = excerpt(f"{link.kind} {' '.join(link.target.split())}", 90)
+            rows.append(["", "", f"  {link.state}: {target}" + (f" ({reason})" if reason else "")])
     lines = aligned(rows)
     if answer.unlinked:
         lines.append("evidence without a requirement:")
@@ -97,21 +92,21 @@ def as_lines(answer: Answer) -> list[str]:
 
 
 def unlinked_line(x: LinkedEvidence) -> str:
-    """Evidence without a requirement in a line."""
+    """Return a line about evidence without a requirement."""
     if x.outcome is not Acceptance.ACCEPTED:
         label = f"{x.label}  " if x.label else ""
         return f"{x.outcome}  {label}{x.where}: {x.reason}"
     return f"{x.verdict}  {x.label or excerpt(x.claim, 80)}  {x.where}"
 
 
-def as_markdown(answer: Answer) -> str:
-    """A table of the requirements, and one of evidence without a requirement."""
+def as_markdown(answer: TraceData) -> str:
+    """Return a Markdown table of the requirements, and one of evidence without a requirement."""
     lines = ["# Requirements", "", counted(answer) + ".", ""]
     lines += _table(
         ["requirement", "state", "links", "place"],
         (
             [
-                f"**{_cell(x.id)}** {_cell(_named(x))}",
+                f"**{_cell(x.id)}** {_cell(_title_of(x))}",
                 str(x.state),
                 "<br>".join(map(_link, x.links)),
                 f"{_cell(x.place.file)}:{x.place.line}",
@@ -134,12 +129,12 @@ def _link(link: TracedLink) -> str:
 
 
 def _cell(text: str) -> str:
-    """A text in a cell of a table of Markdown."""
+    """Return a text for a cell of a Markdown table."""
     return _code(text).replace("<", "&lt;")
 
 
 def _code(text: str) -> str:
-    """A text between backticks in such a cell."""
+    """Return a text for a cell of a Markdown table, between backticks."""
     return " ".join(text.split()).replace("|", "\\|").replace("`", "'")
 
 
@@ -150,8 +145,8 @@ def _table(header: Sequence[str], rows: Iterator[Sequence[str]]) -> Iterator[str
         yield f"| {' | '.join(row)} |"
 
 
-def changes_sheet(answer: Changes) -> Sheet[Change]:
-    """An entry for each change."""
+def changes_sheet(answer: TraceChangesData) -> Sheet[TraceChange]:
+    """Return a table with a row for each change."""
     return Sheet(
         (
             Column("requirement", lambda x: x.requirement),
@@ -168,15 +163,17 @@ def changes_sheet(answer: Changes) -> Sheet[Change]:
 _HOW = {"worse": "got worse", "removed": "removed", "better": "got better", "added": "added", "text": "text"}
 
 
-def changes_lines(answer: Changes) -> list[str]:
-    """The changes, the worst first, then the counts of requirements before and after."""
+def changes_lines(answer: TraceChangesData) -> list[str]:
+    """Return a line for each change, the worst first, then the counts of requirements before and after."""
     lines: list[str] = []
     for how, words in _HOW.items():
         for x in answer.changes:
             if x.how == how:
                 link = "" if x.kind is None else f"  {x.kind} {' '.join(x.target.split())}"
                 states = " -> ".join(str(y) for y in (x.before, x.after) if y is not None)
-                told = "" if how == "text" else f": {states}"
-                lines.append(f"{words}  {x.requirement}{link}{told}" + (f" ({x.reason})" if x.reason else ""))
+                transition = "" if how == "text" else f": {states}"
+                lines.append(
+                    f"{words}  {x.requirement}{link}{transition}" + (f" ({x.reason})" if x.reason else "")
+                )
     counts = ", ".join(f"{state} {old} -> {new}" for state, (old, new) in answer.counts.items())
     return [*(lines or ["nothing changed"]), f"requirements: {counts}"]

@@ -1,6 +1,6 @@
-"""Requirements in ReqIF 1.2 (OMG), as requirements tools exchange them.
+"""Reads requirements in ReqIF 1.2 (OMG), the exchange format of requirements tools.
 
-A requirement is a SPEC-OBJECT with a text; its names for id, title and text are those of the ReqIF
+A requirement is a SPEC-OBJECT with a text; its attributes for id, title and text have the names of the ReqIF
 implementation guide (``ReqIF.ForeignID``, ``ReqIF.Name``, ``ReqIF.Text``). Links to evidence are string
 attributes called ``roadproof.claims``, ``claims`` and so on, one target a line.
 """
@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.extensions.assurance.answers.trace import Position
-from roadproof.extensions.assurance.requirements.requirement import Requirement, Requirements, split_links
-from roadproof.runtime.xml_reader import Element, read_xml
+from roadproof.extensions.assurance.answers.trace import RequirementPlace
+from roadproof.extensions.assurance.requirements.requirement import Requirement, RequirementSet, split_links
+from roadproof.extensions.maps.xml_reader import Element, read_xml
 
 _IDS = ("reqif.foreignid", "id", "uid", "identifier")
 _TITLES = ("reqif.name", "title", "name", "summary")
@@ -26,18 +26,18 @@ _BREAKS = ("br", "p", "div", "li", "tr")
 
 @dataclass(frozen=True)
 class _Object:
-    """A SPEC-OBJECT: its identifier, and values by the name of their attribute in small letters."""
+    """A SPEC-OBJECT: its identifier, and its values by lower-case attribute name."""
 
     identifier: str
     values: Mapping[str, str]
 
     def first(self, names: tuple[str, ...], otherwise: str = "") -> str:
-        """The value of the first of some attributes that is there."""
+        """Return the value of the first of some attributes that is not empty."""
         return next((x for name in names if (x := self.values.get(name, "").strip())), otherwise)
 
 
-def read_reqif(path: Path) -> Requirements:
-    """The requirements of a .reqif file; headings and other objects without a text are left out.
+def read_reqif(path: Path) -> RequirementSet:
+    """Return the requirements of a .reqif file; headings and other objects without a text are left out.
 
     Raises ``InputError``, also for a file with a document type or entities.
     """
@@ -50,11 +50,11 @@ def read_reqif(path: Path) -> Requirements:
     ids = {x.identifier: x.first(_IDS, x.identifier) for x in objects if x.first(_TEXTS)}
     parents = _parents(content, names, ids)
     lines = _lines(path)
-    found = [
+    requirements = [
         Requirement(
             ids[x.identifier],
             x.first(_TEXTS),
-            Position(file=str(path), line=lines.get(x.identifier, 1)),
+            RequirementPlace(file=str(path), line=lines.get(x.identifier, 1)),
             x.first(_TITLES),
             tuple(dict.fromkeys(ids[y] for y in parents.get(x.identifier, ()))),
             split_links(x.values),
@@ -63,9 +63,11 @@ def read_reqif(path: Path) -> Requirements:
         for x in objects
         if x.identifier in ids
     ]
-    left = len(objects) - len(found)
-    notes = (f"{path}: {left} objects have no text, such as headings, and are left out",) if left else ()
-    return Requirements(path, tuple(found), notes=notes)
+    omitted = len(objects) - len(requirements)
+    notes = (
+        (f"{path}: {omitted} objects have no text, such as headings, and are left out",) if omitted else ()
+    )
+    return RequirementSet(path, tuple(requirements), notes=notes)
 
 
 def _object(node: Element, names: Mapping[str, str]) -> _Object:
@@ -81,7 +83,7 @@ def _object(node: Element, names: Mapping[str, str]) -> _Object:
 
 
 def _value(value: Element, names: Mapping[str, str]) -> str:
-    """A value as text: what it says itself, formatted text, or the names of enumeration values."""
+    """Return a value as text: its own text, formatted text, or the names of enumeration values."""
     if value.get("THE-VALUE") is not None:
         return value.get("THE-VALUE", "")
     formatted = value.find("THE-VALUE")
@@ -92,7 +94,7 @@ def _value(value: Element, names: Mapping[str, str]) -> str:
 
 
 def _plain(node: Element) -> Iterator[str]:
-    """The text of XHTML, with a line for each block."""
+    """Yield the text of XHTML, with a line for each block."""
     yield " ".join((node.text or "").split("\n"))
     for child in node:
         yield from _plain(child)
@@ -102,22 +104,24 @@ def _plain(node: Element) -> Iterator[str]:
 
 
 def _parents(content: Element, names: Mapping[str, str], ids: Mapping[str, str]) -> dict[str, list[str]]:
-    """The parents of each requirement, by identifiers: those above it, and targets of its relations."""
-    found: dict[str, list[str]] = {}
+    """Return the parents of each requirement, by identifier: those above it and the targets of
+    its relations.
+    """
+    parents: dict[str, list[str]] = {}
     for node in content.findall("SPECIFICATIONS/SPECIFICATION"):
         for below, above in _hierarchy(node, ""):
             if below in ids and above in ids:
-                found.setdefault(below, []).append(above)
+                parents.setdefault(below, []).append(above)
     for node in content.findall("SPEC-RELATIONS/SPEC-RELATION"):
         kind = names.get(_reference(node, "TYPE"), "").lower()
         below, above = _reference(node, "SOURCE"), _reference(node, "TARGET")
         if below in ids and above in ids and any(word in kind for word in _DERIVED):
-            found.setdefault(below, []).append(above)
-    return found
+            parents.setdefault(below, []).append(above)
+    return parents
 
 
 def _hierarchy(node: Element, above: str) -> Iterator[tuple[str, str]]:
-    """Pairs of an object and the one above it."""
+    """Yield pairs of an object and the one above it."""
     for child in node.findall("CHILDREN/SPEC-HIERARCHY"):
         here = _reference(child, "OBJECT")
         if above:
@@ -126,18 +130,18 @@ def _hierarchy(node: Element, above: str) -> Iterator[tuple[str, str]]:
 
 
 def _reference(node: Element, name: str) -> str:
-    """The identifier that a reference names."""
-    found = node.find(f"{name}/*")
-    return "" if found is None else (found.text or "").strip()
+    """Return the identifier that a reference names."""
+    target = node.find(f"{name}/*")
+    return "" if target is None else (target.text or "").strip()
 
 
 def _lines(path: Path) -> dict[str, int]:
-    """The line on which each object begins."""
+    """Return the line on which each object begins, by identifier."""
     text = path.read_text("utf-8", "replace")
-    found: dict[str, int] = {}
+    lines: dict[str, int] = {}
     line, at = 1, 0
     for match in _OBJECT.finditer(text):
         line += text.count("\n", at, match.start())
         at = match.start()
-        found[match[1]] = line
-    return found
+        lines[match[1]] = line
+    return lines

@@ -1,4 +1,4 @@
-"""Requirements with their links, as any of their formats says them, and the settings of a trace."""
+"""Requirements with their links, independent of their file format, and the settings of a trace."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -6,8 +6,8 @@ from fractions import Fraction
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.extensions.assurance.answers.trace import LinkKind, Position
-from roadproof.library.specification import on_request, unknown
+from roadproof.extensions.assurance.answers.trace import LinkKind, RequirementPlace
+from roadproof.library.specification import on_request, unknown_name
 
 FIELDS: Mapping[str, LinkKind] = {
     "claims": "claim",
@@ -17,12 +17,14 @@ FIELDS: Mapping[str, LinkKind] = {
     "plates": "plate",
     "evidence": "evidence",
 }
-"""The fields of a requirement that name links, in the order in which answers show these."""
+"""The fields of a requirement that hold links, in the order of answers."""
 
 
 @dataclass(frozen=True)
 class Link:
-    """What a requirement rests on: a claim, scenario, test, driver or plate by name, or a file."""
+    """A link from a requirement to a claim, scenario, test, driver or plate by name, or to a file of
+    evidence.
+    """
 
     kind: LinkKind
     target: str
@@ -33,13 +35,15 @@ class Link:
 
 @dataclass(frozen=True)
 class Requirement:
-    """``parents``: the requirements that it is a part of or derived from, by id; ``place``: where it is
-    written. ``identifier``: that of its object in ReqIF, empty in other formats.
+    """A requirement with its links.
+
+    ``parents``: ids of the requirements that it is a part of or derived from; ``place``: where it is written.
+    ``identifier``: the identifier of its object in ReqIF, empty for other formats.
     """
 
     id: str
     text: str
-    place: Position
+    place: RequirementPlace
     title: str = ""
     parents: tuple[str, ...] = ()
     links: tuple[Link, ...] = ()
@@ -48,10 +52,10 @@ class Requirement:
 
 @dataclass(frozen=True, kw_only=True)
 class TraceSettings:
-    """What all links are read with.
+    """The settings of a trace.
 
     ``evidence``: files and folders that are checked. ``specs``, ``set_name``, ``options``, ``parameters``: as
-    for any question. ``vehicles``: models by the name of the vehicle.
+    for any question. ``vehicles``: vehicle models by the name of the vehicle.
     """
 
     evidence: tuple[Path, ...] = ()
@@ -63,78 +67,82 @@ class TraceSettings:
 
     @property
     def evidence_specs(self) -> tuple[Path, ...]:
-        """The user's own files. Evidence names those that come with roadproof by itself."""
+        """The user's own specification files; evidence itself names those that come with roadproof."""
         shipped = on_request()
         return tuple(x for x in self.specs if str(x) not in shipped)
 
 
 @dataclass(frozen=True)
-class Requirements:
-    """The requirements of a file, in order. ``notes``: what was left out, and why."""
+class RequirementSet:
+    """The requirements of a file in order; ``notes``: parts of the file that were left out, with reasons."""
 
     file: Path
     requirements: tuple[Requirement, ...]
     settings: TraceSettings = TraceSettings()
     notes: tuple[str, ...] = ()
 
-    def without_strange_parents(self) -> "Requirements":
-        """The same, without parents that are in other documents; a note names each."""
+    def without_strange_parents(self) -> "RequirementSet":
+        """Return the requirements without parents that are in other documents; each removed parent gets a
+        note.
+        """
         known = {x.id for x in self.requirements}
         strange = [(x, y) for x in self.requirements for y in x.parents if y not in known]
-        notes = tuple(f"{told(x.place)}: {x.id} is derived from {y}, which is not here" for x, y in strange)
+        notes = tuple(
+            f"{place_text(x.place)}: {x.id} is derived from {y}, which is not here" for x, y in strange
+        )
         every = tuple(
             replace(x, parents=tuple(y for y in x.parents if y in known)) for x in self.requirements
         )
         return replace(self, requirements=every, notes=(*self.notes, *notes))
 
-    def with_specs(self, specs: Iterable[Path]) -> "Requirements":
-        """The same, with further specification files."""
+    def with_specs(self, specs: Iterable[Path]) -> "RequirementSet":
+        """Return the requirements with further specification files."""
         every = tuple(dict.fromkeys((*self.settings.specs, *specs)))
         return replace(self, settings=replace(self.settings, specs=every))
 
 
-def check_requirements(found: Sequence[Requirement]) -> None:
-    """Raises ``InputError`` where ids are not unique, a parent does not exist, or parents form a circle."""
-    places: dict[str, Position] = {}
-    for x in found:
-        where = told(x.place)
+def check_requirements(requirements: Sequence[Requirement]) -> None:
+    """Raise ``InputError`` where ids are not unique, a parent does not exist, or parents form a cycle."""
+    places: dict[str, RequirementPlace] = {}
+    for x in requirements:
+        where = place_text(x.place)
         if not x.id:
             raise InputError(f"{where}: the requirement has no id; give it one of its own")
         if x.id in places:
-            raise InputError(
-                f"{where}: two requirements are called '{x.id}'; the other one is at {told(places[x.id])}"
-            )
+            other = place_text(places[x.id])
+            raise InputError(f"{where}: two requirements are called '{x.id}'; the other one is at {other}")
         places[x.id] = x.place
-    parents = {x.id: x.parents for x in found}
-    for x in found:
+    parents = {x.id: x.parents for x in requirements}
+    for x in requirements:
         for parent in x.parents:
             if parent not in parents:
-                raise InputError(
-                    f"{told(x.place)}: requirement {x.id}: {unknown('requirement', parent, parents)}"
-                )
-        if x.id in above(x.id, parents):
-            raise InputError(f"{told(x.place)}: requirement {x.id} is derived from itself; remove a parent")
+                problem = unknown_name("requirement", parent, parents)
+                raise InputError(f"{place_text(x.place)}: requirement {x.id}: {problem}")
+        if x.id in ancestors_of(x.id, parents):
+            raise InputError(
+                f"{place_text(x.place)}: requirement {x.id} is derived from itself; remove a parent"
+            )
 
 
-def above(start: str, parents: Mapping[str, Sequence[str]]) -> set[str]:
-    """The parents of a requirement, and theirs."""
-    found: set[str] = set()
+def ancestors_of(start: str, parents: Mapping[str, Sequence[str]]) -> set[str]:
+    """Return the parents of a requirement, their parents, and so on."""
+    ancestors: set[str] = set()
     waiting = [*parents[start]]
     while waiting:
         name = waiting.pop()
-        if name not in found:
-            found.add(name)
+        if name not in ancestors:
+            ancestors.add(name)
             waiting += parents.get(name, ())
-    return found
+    return ancestors
 
 
-def told(place: Position) -> str:
-    """A place as messages name it."""
+def place_text(place: RequirementPlace) -> str:
+    """Return a place as messages name it."""
     return f"{place.file}, line {place.line}"
 
 
 def split_links(values: Mapping[str, str]) -> tuple[Link, ...]:
-    """The links that fields of another format name: ``values`` by field; a line, or a ``;``, between them."""
+    """Return the links in the fields of another format; a line break or ``;`` separates targets."""
     return tuple(_split(values))
 
 

@@ -1,4 +1,4 @@
-"""Requirements in any format, by the ending of the file."""
+"""Reads requirements in any format, chosen by file suffix."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -6,30 +6,30 @@ from pathlib import Path
 from roadproof.errors import InputError
 from roadproof.extensions.assurance.requirements.doorstop import read_doorstop
 from roadproof.extensions.assurance.requirements.reqif_file import read_reqif
-from roadproof.extensions.assurance.requirements.requirement import Requirements, check_requirements
+from roadproof.extensions.assurance.requirements.requirement import RequirementSet, check_requirements
 from roadproof.extensions.assurance.requirements.strictdoc import read_strictdoc
 from roadproof.extensions.assurance.requirements.toml_file import read_toml_requirements
 
 _FORMATS = "requirements.toml, .reqif, .sdoc (StrictDoc) or a folder of Doorstop"
 
 
-def read_requirements(path: Path) -> Requirements:
-    """The requirements of a file or a folder. Raises ``InputError``."""
-    found = _read(path)
-    check_requirements(found.requirements)
-    if not found.requirements:
+def read_requirements(path: Path) -> RequirementSet:
+    """Return the requirements of a file or a folder. Raises ``InputError``."""
+    requirements = _read(path)
+    check_requirements(requirements.requirements)
+    if not requirements.requirements:
         raise InputError(f"{path}: there is no requirement in it")
-    return found
+    return requirements
 
 
-def _read(path: Path) -> Requirements:
+def _read(path: Path) -> RequirementSet:
     if path.suffix == ".toml" and path.exists():
         return read_toml_requirements(path, _read_source)
     return _read_source(path).without_strange_parents()
 
 
-def _read_source(path: Path) -> Requirements:
-    """The requirements of a file that is no TOML. Raises ``InputError``."""
+def _read_source(path: Path) -> RequirementSet:
+    """Return the requirements of a file that is not TOML. Raises ``InputError``."""
     if not path.exists():
         raise InputError(f"{path} does not exist: name {_FORMATS}")
     if path.is_dir():
@@ -39,7 +39,7 @@ def _read_source(path: Path) -> Requirements:
     raise InputError(f"{path}: this is no file of requirements: name {_FORMATS}")
 
 
-_READERS: Mapping[str, Callable[[Path], Requirements]] = {
+_READERS: Mapping[str, Callable[[Path], RequirementSet]] = {
     ".reqif": read_reqif,
     ".xml": read_reqif,
     ".sdoc": read_strictdoc,

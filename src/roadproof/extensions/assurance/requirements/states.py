@@ -1,4 +1,4 @@
-"""The state of every requirement, from the evidence that its links and its parts have."""
+"""Derives the state of every requirement from the evidence of its links and parts."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,26 +9,31 @@ from roadproof.extensions.assurance.requirements.checked_evidence import Checked
 from roadproof.extensions.assurance.requirements.fingerprints import (
     Key,
     Parts,
-    Surroundings,
+    TraceContext,
     differences,
     key_of,
     parts_of,
 )
 from roadproof.extensions.assurance.requirements.matching import (
-    Shown,
+    LinkFinding,
     Target,
-    combined,
-    is_beside,
+    combined_state,
+    findings_of_link,
+    is_related,
     read_target,
-    shown_by,
 )
-from roadproof.extensions.assurance.requirements.requirement import Requirement, Requirements, above, told
+from roadproof.extensions.assurance.requirements.requirement import (
+    Requirement,
+    RequirementSet,
+    ancestors_of,
+    place_text,
+)
 from roadproof.reasons import NO_REASON
 
 
 @dataclass(frozen=True)
 class States:
-    """Requirements with their states, what each link rests on, and the evidence that none names."""
+    """Requirements with their states, what each link rests on, and the evidence that no requirement names."""
 
     requirements: tuple[TracedRequirement, ...]
     rests_on: Mapping[Key, Parts]
@@ -36,11 +41,11 @@ class States:
 
 
 @dataclass(frozen=True)
-class _Matched:
-    """A link with what shows it."""
+class _LinkEvidence:
+    """A link with the findings about it."""
 
     target: Target
-    shown: Sequence[Shown]
+    shown: Sequence[LinkFinding]
 
     @property
     def evidence(self) -> list[CheckedEvidence]:
@@ -48,65 +53,72 @@ class _Matched:
 
 
 Targets = Mapping[str, Sequence[Target]]
-"""The links of each requirement, by its id."""
+"""The parsed links of each requirement, by its id."""
 
 
-def read_targets(given: Requirements, around: Surroundings) -> Targets:
-    """All links, read with the definitions of the trace. Raises ``InputError`` for one that is no link."""
+def read_targets(requirement_set: RequirementSet, context: TraceContext) -> Targets:
+    """Parse all links under the definitions of the trace. Raises ``InputError`` for an invalid link."""
     return {
         x.id: [
-            read_target(link, around.home, f"{told(x.place)}, requirement {x.id}, {link.kind}")
+            read_target(link, context.home, f"{place_text(x.place)}, requirement {x.id}, {link.kind}")
             for link in x.links
         ]
-        for x in given.requirements
+        for x in requirement_set.requirements
     }
 
 
 def states_of(
-    given: Requirements,
+    requirement_set: RequirementSet,
     targets: Targets,
     evidence: Sequence[CheckedEvidence],
-    around: Surroundings,
+    context: TraceContext,
     locked: Mapping[Key, Parts] | None,
 ) -> States:
-    """What the evidence says of each requirement. ``locked``: what links rested on when accepted."""
+    """Return the state of each requirement and link.
+
+    ``locked``: the parts that links rested on when they were accepted, None without a lock file.
+    """
     rests_on: dict[Key, Parts] = {}
     links: dict[str, list[TracedLink]] = {}
     used: set[int] = set()
-    for x in given.requirements:
+    for x in requirement_set.requirements:
         links[x.id] = []
         for target in targets[x.id]:
-            found = _Matched(target, shown_by(target, evidence, around.values, around.folder))
-            used |= {id(y) for y in (*found.evidence, *(z for z in evidence if is_beside(target.link, z)))}
+            matched = _LinkEvidence(
+                target, findings_of_link(target, evidence, context.values, context.folder)
+            )
+            used |= {id(y) for y in (*matched.evidence, *(z for z in evidence if is_related(target.link, z)))}
             key = key_of(x, target.link)
-            rests_on[key] = parts_of(x, target, found.evidence, around)
+            rests_on[key] = parts_of(x, target, matched.evidence, context)
             before = None if locked is None else locked.get(key)
-            links[x.id].append(_link(found, () if before is None else differences(before, rests_on[key])))
-    states = _whole_states(given, links)
-    traced = tuple(_traced(x, links[x.id], states[x.id]) for x in given.requirements)
+            links[x.id].append(_link(matched, () if before is None else differences(before, rests_on[key])))
+    states = _whole_states(requirement_set, links)
+    traced = tuple(_traced(x, links[x.id], states[x.id]) for x in requirement_set.requirements)
     beside = tuple(x for x in evidence if id(x) not in used and _is_evidence(x))
     return States(traced, rests_on, beside)
 
 
 def _is_evidence(x: CheckedEvidence) -> bool:
-    """Whether a finding is listed where no requirement names it: not one that sums up others."""
+    """Return whether to list a finding that no requirement names; findings that sum up others are not
+    listed.
+    """
     finding = x.finding
     return finding.outcome is not Acceptance.ACCEPTED or (
         finding.kind != NO_EVIDENCE and finding.verdict not in ("READ", "DERIVED")
     )
 
 
-def _link(found: _Matched, changes: tuple[str, ...]) -> TracedLink:
-    state, reason = combined(found.target.link.kind, found.shown)
+def _link(matched: _LinkEvidence, changes: tuple[str, ...]) -> TracedLink:
+    state, reason = combined_state(matched.target.link.kind, matched.shown)
     if changes and (state.is_shown or state is LinkState.STALE):
         state, reason = LinkState.STALE, NO_REASON
     return TracedLink(
-        kind=found.target.link.kind,
-        target=found.target.link.target,
+        kind=matched.target.link.kind,
+        target=matched.target.link.target,
         state=state,
         reason=reason,
         changes=changes,
-        evidence=tuple(x.kept for x in found.evidence),
+        evidence=tuple(x.as_linked for x in matched.evidence),
     )
 
 
@@ -116,23 +128,25 @@ def _traced(x: Requirement, links: Sequence[TracedLink], state: LinkState) -> Tr
     )
 
 
-def _whole_states(given: Requirements, links: Mapping[str, Sequence[TracedLink]]) -> dict[str, LinkState]:
-    """The worst state of the links of each requirement and of all its parts.
+def _whole_states(
+    requirement_set: RequirementSet, links: Mapping[str, Sequence[TracedLink]]
+) -> dict[str, LinkState]:
+    """Return the worst state of the links of each requirement and of all its parts.
 
-    A requirement without links and without parts is missing.
+    A requirement without links and without parts is MISSING.
     """
-    parents = {x.id: x.parents for x in given.requirements}
-    has_parts = {name for x in given.requirements for name in x.parents}
+    parents = {x.id: x.parents for x in requirement_set.requirements}
+    has_parts = {name for x in requirement_set.requirements for name in x.parents}
     inside: dict[str, list[LinkState]] = {x: [] for x in parents}
     for name in parents:
         own = [x.state for x in links[name]]
         if not own and name not in has_parts:
             own = [LinkState.MISSING]
-        for upper in (name, *above(name, parents)):
+        for upper in (name, *ancestors_of(name, parents)):
             inside[upper] += own
-    return {name: worst(found) for name, found in inside.items()}
+    return {name: worst(states) for name, states in inside.items()}
 
 
 def worst(states: Iterable[LinkState]) -> LinkState:
-    """The worst of several states; missing where there is none."""
+    """Return the worst of several states, MISSING for none."""
     return max(states, key=lambda x: x.rank, default=LinkState.MISSING)

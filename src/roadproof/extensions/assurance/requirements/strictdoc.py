@@ -1,4 +1,4 @@
-"""Requirements of StrictDoc: a text of nodes such as ``[REQUIREMENT]``, each with fields ``UID: LEAD-1``.
+"""Reads requirements of StrictDoc: nodes such as ``[REQUIREMENT]``, each with fields ``UID: LEAD-1``.
 
 A field of several lines stands between ``>>>`` and ``<<<``. Links to evidence are fields of the user's own
 grammar, called CLAIMS, SCENARIOS, TESTS, PLATES and EVIDENCE.
@@ -10,22 +10,22 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.extensions.assurance.answers.trace import Position
+from roadproof.extensions.assurance.answers.trace import RequirementPlace
 from roadproof.extensions.assurance.requirements.requirement import (
     Requirement,
-    Requirements,
+    RequirementSet,
+    place_text,
     split_links,
-    told,
 )
 from roadproof.runtime.files import read_text
 
 LARGEST = 20_000_000
-"""Bytes of a file."""
+"""The largest file size in bytes."""
 _TAG = re.compile(r"\[\[?(/?)([A-Z][A-Z0-9_]*)\]\]?\s*")
 _FIELD = re.compile(r"([A-Z][A-Z0-9_]*):(?:\s+(.*))?")
 _INNER = re.compile(r"\s*(?:-\s+)?([A-Z][A-Z0-9_]*):\s*(.*)")
 _OTHERS = ("DOCUMENT", "GRAMMAR", "SECTION", "TEXT", "FREETEXT", "DOCUMENT_FROM_FILE", "INCLUDE")
-"""Nodes that are no requirements."""
+"""Tags of nodes that are no requirements."""
 _RELATIONS = ("RELATIONS", "REFS")
 
 
@@ -34,7 +34,7 @@ class _Node:
     """A node: its line, its fields, and the UIDs of its parents."""
 
     tag: str
-    place: Position
+    place: RequirementPlace
     fields: dict[str, str] = field(default_factory=dict)
     parents: list[str] = field(default_factory=list)
 
@@ -43,10 +43,10 @@ class _Node:
         return self.tag not in _OTHERS and (self.tag == "REQUIREMENT" or "STATEMENT" in self.fields)
 
 
-def read_strictdoc(path: Path) -> Requirements:
-    """The requirements of a .sdoc file. Raises ``InputError`` with the line of what is not understood."""
+def read_strictdoc(path: Path) -> RequirementSet:
+    """Return the requirements of a .sdoc file. Raises ``InputError`` with the line of the error."""
     lines = read_text(path, LARGEST, "divide the document").splitlines()
-    found: list[Requirement] = []
+    requirements: list[Requirement] = []
     notes: list[str] = []
     for node in _nodes(lines, path):
         if not node.is_requirement:
@@ -54,9 +54,9 @@ def read_strictdoc(path: Path) -> Requirements:
         fields = node.fields
         uid = fields.get("UID")
         if not uid:
-            notes.append(f"{told(node.place)}: the requirement has no UID and is left out")
+            notes.append(f"{place_text(node.place)}: the requirement has no UID and is left out")
             continue
-        found.append(
+        requirements.append(
             Requirement(
                 uid,
                 fields.get("STATEMENT", ""),
@@ -66,7 +66,7 @@ def read_strictdoc(path: Path) -> Requirements:
                 split_links(fields),
             )
         )
-    return Requirements(path, tuple(found), notes=tuple(notes))
+    return RequirementSet(path, tuple(requirements), notes=tuple(notes))
 
 
 def _nodes(lines: list[str], path: Path) -> Iterator[_Node]:
@@ -74,7 +74,7 @@ def _nodes(lines: list[str], path: Path) -> Iterator[_Node]:
     inside = ""  # the field whose lines are read, RELATIONS among them
     block: list[str] | None = None
     for number, line in enumerate(lines, 1):
-        place = Position(file=str(path), line=number)
+        place = RequirementPlace(file=str(path), line=number)
         tag = None if block is not None else _TAG.fullmatch(line)
         if block is not None and node is not None:
             if line.strip() == "<<<":
@@ -90,13 +90,13 @@ def _nodes(lines: list[str], path: Path) -> Iterator[_Node]:
             inside, opens = _read_line(node, inside, line, place)
             block = [] if opens else None
     if block is not None and node is not None:
-        raise InputError(f"{told(node.place)}: the field {inside} has no end; close it with <<<")
+        raise InputError(f"{place_text(node.place)}: the field {inside} has no end; close it with <<<")
     if node is not None:
         yield node
 
 
-def _read_line(node: _Node, inside: str, line: str, place: Position) -> tuple[str, bool]:
-    """Read a line of a node: the field that is read now, and whether it opens a block of lines."""
+def _read_line(node: _Node, inside: str, line: str, place: RequirementPlace) -> tuple[str, bool]:
+    """Read a line of a node; return the name of its field, and whether it opens a block of lines."""
     field_line = _FIELD.fullmatch(line)
     if field_line is not None:
         name, value = field_line[1], (field_line[2] or "").strip()
@@ -114,6 +114,6 @@ def _read_line(node: _Node, inside: str, line: str, place: Position) -> tuple[st
             node.parents.append(inner[2].strip())
         return inside, False
     raise InputError(
-        f"{told(place)}: {line.strip()[:60]!r} is no field of a node; write FIELD: value, or lines between "
-        ">>> and <<<"
+        f"{place_text(place)}: {line.strip()[:60]!r} is no field of a node; write FIELD: value, or lines "
+        "between >>> and <<<"
     )

@@ -1,4 +1,4 @@
-"""``requirements.toml``: requirements with their links, or links for requirements of another file.
+"""Reads ``requirements.toml``: requirements with their links, or links for requirements of another file.
 
 ``[trace]`` has the settings, ``[[requirement]]`` an ``id``, a ``text`` and links. With ``source`` in
 ``[trace]`` the requirements are those of other files, and a ``[[requirement]]`` of the same id adds links.
@@ -11,16 +11,16 @@ from fractions import Fraction
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.extensions.assurance.answers.trace import Position
+from roadproof.extensions.assurance.answers.trace import RequirementPlace
 from roadproof.extensions.assurance.requirements.requirement import (
     FIELDS,
     Link,
     Requirement,
-    Requirements,
+    RequirementSet,
     TraceSettings,
-    told,
+    place_text,
 )
-from roadproof.library.specification import on_request, unknown
+from roadproof.library.specification import on_request, unknown_name
 from roadproof.runtime.files import read_text
 from roadproof.world.models import LARGEST_MODEL, read_toml
 
@@ -30,64 +30,66 @@ _REQUIREMENT = ("id", "text", "title", "parent", "derived_from", *FIELDS)
 Content = Mapping[str, object]
 
 
-def read_toml_requirements(path: Path, read: Callable[[Path], Requirements]) -> Requirements:
-    """The requirements of a TOML file; ``read`` reads those of a ``source``. Raises ``InputError``."""
+def read_toml_requirements(path: Path, read: Callable[[Path], RequirementSet]) -> RequirementSet:
+    """Return the requirements of a TOML file; ``read`` reads those of a ``source``. Raises ``InputError``."""
     content = read_toml(path)
     for name in content:
         if name not in ("trace", "requirement"):
-            raise InputError(f"{path}: {unknown('table', name, ('trace', 'requirement'))}")
+            raise InputError(f"{path}: {unknown_name('table', name, ('trace', 'requirement'))}")
     head = _table(content.get("trace", {}), f"{path}, trace")
-    _only(head, _TRACE, f"{path}, trace")
+    _check_fields(head, _TRACE, f"{path}, trace")
     settings = _settings(head, path)
     own = [*_requirements(content, path)]
     sources = [read(path.parent / x) for x in _texts(head, "source", f"{path}, trace")]
     if not sources:
         for x in own:
             if not x.text:
-                raise InputError(f"{told(x.place)}: requirement {x.id or '?'} has no text")
-        return Requirements(path, tuple(own), settings)
-    given = [x for source in sources for x in source.requirements]
+                raise InputError(f"{place_text(x.place)}: requirement {x.id or '?'} has no text")
+        return RequirementSet(path, tuple(own), settings)
+    sourced = [x for source in sources for x in source.requirements]
     notes = tuple(note for source in sources for note in source.notes)
-    joined = Requirements(path, tuple(_joined(given, own)), settings, notes)
+    joined = RequirementSet(path, tuple(_joined(sourced, own)), settings, notes)
     return joined.without_strange_parents()
 
 
-def _joined(given: list[Requirement], own: list[Requirement]) -> Iterator[Requirement]:
-    """The requirements of sources, with the links that are added to them. Raises ``InputError``."""
-    known = {x.id for x in given}
+def _joined(sourced: list[Requirement], own: list[Requirement]) -> Iterator[Requirement]:
+    """Yield the requirements of sources with the added links. Raises ``InputError``."""
+    known = {x.id for x in sourced}
     more: dict[str, list[Link]] = {}
     for x in own:
         if x.id not in known:
-            raise InputError(f"{told(x.place)}: {unknown('requirement', x.id, known)}")
+            raise InputError(f"{place_text(x.place)}: {unknown_name('requirement', x.id, known)}")
         if x.text or x.title or x.parents:
-            raise InputError(f"{told(x.place)}: the text of {x.id} is in its source; only add links here")
+            raise InputError(
+                f"{place_text(x.place)}: the text of {x.id} is in its source; only add links here"
+            )
         more.setdefault(x.id, []).extend(x.links)
-    for x in given:
+    for x in sourced:
         yield replace(x, links=tuple(dict.fromkeys((*x.links, *more.get(x.id, ())))))
 
 
 def _settings(head: Content, path: Path) -> TraceSettings:
-    where, beside = f"{path}, trace", path.parent
+    where, folder = f"{path}, trace", path.parent
     shipped = on_request()
     words = _texts(head, "set", where) or ("base",)
     return TraceSettings(
-        evidence=tuple(beside / x for x in _texts(head, "evidence", where)),
-        specs=tuple(Path(x) if x in shipped else beside / x for x in _texts(head, "specs", where)),
+        evidence=tuple(folder / x for x in _texts(head, "evidence", where)),
+        specs=tuple(Path(x) if x in shipped else folder / x for x in _texts(head, "specs", where)),
         set_name=words[0],
         options={k: _text(v, f"{where}, options.{k}") for k, v in _inner(head, "options", where).items()},
         parameters={
             k: _value(v, f"{where}, parameters.{k}") for k, v in _inner(head, "parameters", where).items()
         },
         vehicles={
-            k: _model(_text(v, f"{where}, vehicles.{k}"), beside)
+            k: _model(_text(v, f"{where}, vehicles.{k}"), folder)
             for k, v in _inner(head, "vehicles", where).items()
         },
     )
 
 
-def _model(name: str, beside: Path) -> str:
-    """The name of a shipped vehicle model, or the path of one of the user's."""
-    return str(beside / name) if name.endswith(".toml") else name
+def _model(name: str, folder: Path) -> str:
+    """Return the name of a shipped vehicle model, or the path of one of the user's."""
+    return str(folder / name) if name.endswith(".toml") else name
 
 
 def _requirements(content: Content, path: Path) -> Iterator[Requirement]:
@@ -96,29 +98,33 @@ def _requirements(content: Content, path: Path) -> Iterator[Requirement]:
         raise InputError(f"{path}: write [[requirement]], with two brackets, for each requirement")
     places = _places(path)
     for number, table in enumerate(tables, 1):
-        place = places[number - 1] if len(places) == len(tables) else Position(file=str(path))
-        where = f"{told(place)}, requirement {number}"
-        said = _table(table, where)
-        _only(said, _REQUIREMENT, where)
+        place = places[number - 1] if len(places) == len(tables) else RequirementPlace(file=str(path))
+        where = f"{place_text(place)}, requirement {number}"
+        fields = _table(table, where)
+        _check_fields(fields, _REQUIREMENT, where)
         yield Requirement(
-            _text(said.get("id", ""), f"{where}, id").strip(),
-            _text(said.get("text", ""), f"{where}, text").strip(),
+            _text(fields.get("id", ""), f"{where}, id").strip(),
+            _text(fields.get("text", ""), f"{where}, text").strip(),
             place,
-            _text(said.get("title", ""), f"{where}, title").strip(),
-            tuple(dict.fromkeys((*_texts(said, "parent", where), *_texts(said, "derived_from", where)))),
+            _text(fields.get("title", ""), f"{where}, title").strip(),
+            tuple(dict.fromkeys((*_texts(fields, "parent", where), *_texts(fields, "derived_from", where)))),
             tuple(
                 dict.fromkeys(
-                    Link(kind, x.strip()) for name, kind in FIELDS.items() for x in _texts(said, name, where)
+                    Link(kind, x.strip())
+                    for name, kind in FIELDS.items()
+                    for x in _texts(fields, name, where)
                 )
             ),
         )
 
 
-def _places(path: Path) -> list[Position]:
-    """Where each ``[[requirement]]`` begins."""
+def _places(path: Path) -> list[RequirementPlace]:
+    """Return where each ``[[requirement]]`` begins."""
     lines = read_text(path, LARGEST_MODEL, "").splitlines()
-    found = ((number, _HEAD.match(line)) for number, line in enumerate(lines, 1))
-    return [Position(file=str(path), line=n, column=len(x[1]) + 1) for n, x in found if x is not None]
+    headers = ((number, _HEAD.match(line)) for number, line in enumerate(lines, 1))
+    return [
+        RequirementPlace(file=str(path), line=n, column=len(x[1]) + 1) for n, x in headers if x is not None
+    ]
 
 
 def _table(content: object, where: str) -> Content:
@@ -131,14 +137,14 @@ def _inner(content: Content, name: str, where: str) -> Content:
     return _table(content.get(name, {}), f"{where}, {name}")
 
 
-def _only(content: Content, known: tuple[str, ...], where: str) -> None:
+def _check_fields(content: Content, known: tuple[str, ...], where: str) -> None:
     for name in content:
         if name not in known:
-            raise InputError(f"{where}: {unknown('field', name, known)}")
+            raise InputError(f"{where}: {unknown_name('field', name, known)}")
 
 
 def _texts(content: Content, name: str, where: str) -> tuple[str, ...]:
-    """A list of texts or numbers, or one alone."""
+    """Return a list of texts or numbers, or a single one, as texts."""
     value = content.get(name, [])
     every = value if isinstance(value, list) else [value]
     return tuple(_text(x, f"{where}, {name}") for x in every)

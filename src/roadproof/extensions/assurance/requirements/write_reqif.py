@@ -1,12 +1,12 @@
-"""Requirements with their states as ReqIF 1.2, for a requirements tool."""
+"""Writes requirements with their states as ReqIF 1.2, for a requirements tool."""
 
 import hashlib
 from collections.abc import Iterator, Mapping
 from datetime import datetime
 
-from roadproof.extensions.assurance.answers.trace import Answer, TracedRequirement
+from roadproof.extensions.assurance.answers.trace import TraceData, TracedRequirement
 from roadproof.extensions.assurance.requirements.requirement import FIELDS
-from roadproof.frontends.report.xml import Element, document, element
+from roadproof.extensions.maps.xml_writer import Element, document, element
 from roadproof.runtime.version import VERSION
 
 _NAMESPACE = "http://www.omg.org/spec/ReqIF/20110401/reqif.xsd"
@@ -17,23 +17,25 @@ _LONGEST = "100000"
 # The schema of ReqIF 1.2 allows no other REQ-IF-VERSION than 1.0.
 
 
-def as_reqif(answer: Answer, title: str, changed: datetime, identifiers: Mapping[str, str]) -> bytes:
-    """A .reqif file: an object for each requirement, its parents as relations, its links as attributes.
+def as_reqif(answer: TraceData, title: str, changed: datetime, identifiers: Mapping[str, str]) -> bytes:
+    """Return a .reqif file: an object for each requirement, its parents as relations, its links as
+    attributes.
 
-    ``changed``: when the requirements were changed last. ``identifiers``: of the objects of requirements that
-    came from ReqIF, so that a tool knows them again.
+    ``changed``: the time of the last change of the requirements. ``identifiers``: object identifiers of
+    requirements that came from ReqIF, which let a tool recognise them.
     """
-    return _Writer(changed.isoformat(timespec="seconds"), identifiers).file(answer, title)
+    return _ReqifWriter(changed.isoformat(timespec="seconds"), identifiers).file(answer, title)
 
 
-class _Writer:
-    """Writes elements that all say when they were changed last."""
+class _ReqifWriter:
+    """Writes ReqIF elements that carry the time of the last change."""
 
     def __init__(self, changed: str, identifiers: Mapping[str, str]) -> None:
         self.changed = changed
         self.identifiers = identifiers
 
-    def file(self, answer: Answer, title: str) -> bytes:
+    def file(self, answer: TraceData, title: str) -> bytes:
+        """Return the whole document."""
         content = element(
             "REQ-IF-CONTENT",
             element("DATATYPES", *self._datatypes()),
@@ -77,27 +79,33 @@ class _Writer:
         reference = element(f"DATATYPE-DEFINITION-{kind}-REF", text=_id("type", datatype))
         return self._named(f"ATTRIBUTE-DEFINITION-{kind}", "attribute", name, element("TYPE", reference))
 
-    def _object(self, x: TracedRequirement) -> Element:
+    def _object(self, requirement: TracedRequirement) -> Element:
         links = {
-            f"roadproof.{name}": "\n".join(" ".join(y.target.split()) for y in x.links if y.kind == kind)
+            f"roadproof.{name}": "\n".join(
+                " ".join(y.target.split()) for y in requirement.links if y.kind == kind
+            )
             for name, kind in FIELDS.items()
         }
-        said = {"ReqIF.ForeignID": x.id, "ReqIF.Name": x.title, "roadproof.state": str(x.state)} | links
-        values = [_string(name, value) for name, value in said.items() if value]
-        return self._plain(
+        attributes = {
+            "ReqIF.ForeignID": requirement.id,
+            "ReqIF.Name": requirement.title,
+            "roadproof.state": str(requirement.state),
+        } | links
+        values = [_string(name, value) for name, value in attributes.items() if value]
+        return self._identified(
             "SPEC-OBJECT",
-            self._object_id(x.id),
+            self._object_id(requirement.id),
             element("TYPE", element("SPEC-OBJECT-TYPE-REF", text=_id("type", "Requirement"))),
-            element("VALUES", *values, _formatted(x.text)),
+            element("VALUES", *values, _formatted(requirement.text)),
         )
 
     def _object_id(self, name: str) -> str:
         return self.identifiers.get(name) or _id("object", name)
 
-    def _relations(self, answer: Answer) -> Iterator[Element]:
+    def _relations(self, answer: TraceData) -> Iterator[Element]:
         for x in answer.requirements:
             for parent in x.parents:
-                yield self._plain(
+                yield self._identified(
                     "SPEC-RELATION",
                     _id("relation", f"{x.id}\n{parent}"),
                     element("TYPE", element("SPEC-RELATION-TYPE-REF", text=_id("type", "derived from"))),
@@ -105,9 +113,9 @@ class _Writer:
                     element("TARGET", element("SPEC-OBJECT-REF", text=self._object_id(parent))),
                 )
 
-    def _specification(self, answer: Answer, title: str) -> Element:
+    def _specification(self, answer: TraceData, title: str) -> Element:
         places = (
-            self._plain(
+            self._identified(
                 "SPEC-HIERARCHY",
                 _id("place", x.id),
                 element("OBJECT", element("SPEC-OBJECT-REF", text=self._object_id(x.id))),
@@ -118,11 +126,11 @@ class _Writer:
         return self._named("SPECIFICATION", "document", title, kind, element("CHILDREN", *places))
 
     def _named(self, tag: str, kind: str, name: str, *children: Element, **more: str) -> Element:
-        made = self._plain(tag, _id(kind, name), *children, **more)
+        made = self._identified(tag, _id(kind, name), *children, **more)
         made.set("LONG-NAME", name)
         return made
 
-    def _plain(self, tag: str, identifier: str, *children: Element, **more: str) -> Element:
+    def _identified(self, tag: str, identifier: str, *children: Element, **more: str) -> Element:
         return element(tag, *children, IDENTIFIER=identifier, **{"LAST-CHANGE": self.changed}, **more)
 
 
@@ -132,7 +140,7 @@ def _string(name: str, value: str) -> Element:
 
 
 def _formatted(text: str) -> Element:
-    """A text as XHTML, its lines divided by breaks."""
+    """Return a text as XHTML with its line breaks."""
     first, *lines = text.split("\n")
     block = element("xhtml:div", text=first)
     for line in lines:
@@ -144,5 +152,5 @@ def _formatted(text: str) -> Element:
 
 
 def _id(kind: str, name: str) -> str:
-    """An identifier that is the same each time: XML allows no others than names in it."""
+    """Return a reproducible identifier of letters and digits, as XML requires."""
     return f"{kind}-{hashlib.sha256(name.encode()).hexdigest()[:20]}"

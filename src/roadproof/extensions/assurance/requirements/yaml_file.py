@@ -1,4 +1,4 @@
-"""YAML files: the one home of PyYAML. All scalars are texts, as they are written."""
+"""Reads YAML files; the only module that imports PyYAML. All scalars are texts, as written."""
 
 import json
 from pathlib import Path
@@ -10,11 +10,11 @@ from roadproof.errors import InputError
 from roadproof.runtime.files import read_text
 
 LARGEST = 1_000_000
-"""Bytes of a file."""
+"""The largest file size in bytes."""
 
 
 class Item(NamedTuple):
-    """A part of a list or an object: a text, or a key with its value."""
+    """An entry of a list or object: a text, or a key with its value."""
 
     text: str
     value: str | None = None
@@ -24,32 +24,32 @@ Value: TypeAlias = str | tuple[Item, ...]
 
 
 class _Loader(yaml.BaseLoader):  # type: ignore[misc]
-    """Reads scalars as texts; refuses a key that is given twice, parts that are repeated, and tags."""
+    """Loads scalars as texts; rejects repeated keys, aliases and tags."""
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
-        given: set[str] = set()
+        keys: set[str] = set()
         for place, _ in node.value:
             name = str(self.construct_object(place, deep=True))
-            if name in given:
+            if name in keys:
                 raise yaml.constructor.ConstructorError(
                     None, None, f"the key '{name}' is given twice", place.start_mark
                 )
-            given.add(name)
+            keys.add(name)
         made: dict[Any, Any] = super().construct_mapping(node, deep)
         return made
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         event = self.peek_event()
         if isinstance(event, yaml.events.AliasEvent) or getattr(event, "tag", None):
-            told = "a repeated part (*name) and a tag (!name) are not read"
-            raise yaml.composer.ComposerError(None, None, told, event.start_mark)
+            message = "a repeated part (*name) and a tag (!name) are not read"
+            raise yaml.composer.ComposerError(None, None, message, event.start_mark)
         return super().compose_node(parent, index)
 
 
 def read_yaml(path: Path) -> dict[str, Value]:
-    """The keys of a file with their values, all as texts. Raises ``InputError`` with the line.
+    """Return the keys of a file with their values, all as texts. Raises ``InputError`` with the line.
 
-    An object comes as a list of its keys with their values, in a list as well.
+    An object inside is a list of its keys with their values.
     """
     text = read_text(path, LARGEST, "an item of requirements is smaller")
     try:
@@ -59,8 +59,8 @@ def read_yaml(path: Path) -> dict[str, Value]:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = "" if mark is None else f", line {mark.line + 1}"
-        told = " ".join(str(getattr(error, "problem", error)).split())
-        raise InputError(f"{path}{where}: it is no YAML: {told}") from None
+        problem = " ".join(str(getattr(error, "problem", error)).split())
+        raise InputError(f"{path}{where}: it is no YAML: {problem}") from None
     if content in (None, ""):
         return {}
     if not isinstance(content, dict):
@@ -76,10 +76,10 @@ def _value(value: object) -> Value:
 
 def _items(value: object) -> tuple[Item, ...]:
     if isinstance(value, dict):
-        return tuple(Item(str(name), _text(said)) for name, said in value.items())
+        return tuple(Item(str(name), _text(item)) for name, item in value.items())
     return (Item(_text(value)),)
 
 
 def _text(value: object) -> str:
-    """A text; what lies deeper, which no field that is read has, as JSON."""
+    """Return a text; deeper structures, which no known field has, as JSON."""
     return value.strip("\n") if isinstance(value, str) else json.dumps(value, ensure_ascii=False)

@@ -1,10 +1,10 @@
-"""``roadproof catalogue``: what a catalogue of tests shows, what nobody tests, and drives for that."""
+"""``roadproof catalogue``: the targets that tests show, missing targets, and drives for these."""
 
 import argparse
 
 from roadproof.errors import UsageError
 from roadproof.extensions.catalogue.settings import Catalogue
-from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.basis import deliver, read_definitions, study_keywords
 from roadproof.frontends.cli.progress import Counter
 from roadproof.frontends.settings.flags import read_flag
 
@@ -66,10 +66,10 @@ def run(args: argparse.Namespace) -> int:
     formats_in(args.formats or "csv", names())
     home = read_definitions(args, OPTIONS)
     given = study_keywords(args, OPTIONS, beside_json=True)
-    found = catalogue(*args.paths, using=home, **given)
-    code = hand_over(args, found, args.pictures)
+    answer = catalogue(*args.paths, using=home, **given)
+    code = deliver(args, answer, args.pictures)
     if args.complete is not None:
-        completed = found.complete(
+        completed = answer.complete(
             args.complete,
             args.objective or "smooth",
             args.spread or 1,

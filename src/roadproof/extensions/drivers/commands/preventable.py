@@ -4,9 +4,8 @@ import argparse
 
 from roadproof.errors import UsageError
 from roadproof.extensions.drivers.options import add_drivers
-from roadproof.extensions.drivers.settings import Preventable
-from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.settings.readers import flat
+from roadproof.extensions.drivers.settings import Preventable, flat
+from roadproof.frontends.cli.basis import deliver, read_definitions, study_keywords
 
 SUMMARY = "map the initial values from which a driver prevents a collision"
 
@@ -47,17 +46,17 @@ def run(args: argparse.Namespace) -> int:
     given |= {"along": _range("--along", args.along, kind.line)}
     given |= {"across": _range("--across", args.across, kind.across)}
     home = read_definitions(args, OPTIONS)
-    return hand_over(args, preventable(args.manoeuvre, flat(args.models or ()), home, **given), args.pictures)
+    return deliver(args, preventable(args.manoeuvre, flat(args.models or ()), home, **given), args.pictures)
 
 
 def _range(option: str, text: str | None, name: str) -> tuple[str, str] | None:
     """The range that a text names. Raises ``UsageError`` where it is that of something else."""
     if text is None:
         return None
-    said, equals, value = text.partition("=")
+    stated, equals, value = text.partition("=")
     low, colon, high = value.partition(":")
     if not equals or not colon:
         raise UsageError(f"{option} {text}: write {name}=LOW:HIGH")
-    if said.strip() != name:
+    if stated.strip() != name:
         raise UsageError(f"{option} {text}: this plate varies {name}; write {name}=LOW:HIGH")
     return low.strip(), high.strip()

@@ -1,1 +1,1 @@
-"""From which initial values a driver prevents a collision: plates with drives on both sides, and lemmas."""
+"""The initial values from which a driver prevents a collision: plates, drives on both sides, lemmas."""

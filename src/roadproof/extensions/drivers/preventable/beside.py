@@ -8,14 +8,15 @@ from itertools import islice, pairwise
 from math import ceil
 
 from roadproof.errors import InputError
-from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.answer import ClaimAnswer, undecided
 from roadproof.evidence.claim import Claim, parameters_in
 from roadproof.evidence.judged import JudgedDrive, RejectedError
-from roadproof.extensions.drivers.driving import PARAMETERS, DriverSettings, drive_of
+from roadproof.extensions.drivers.driver_settings import DriverSettings
+from roadproof.extensions.drivers.driving import drive_of
 from roadproof.extensions.drivers.gradual import RATE
 from roadproof.extensions.drivers.lines import Side, boundary_text
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, CutIn, Manoeuvre, Plane, Values, start_of
-from roadproof.extensions.drivers.models import MODELS, ModelName, passed
+from roadproof.extensions.drivers.models import driver_model, parameters_of, passed
 from roadproof.extensions.drivers.preventable.boundary import (
     BesideBoundary,
     Labels,
@@ -31,10 +32,10 @@ from roadproof.extensions.drivers.preventable.plate import Plate
 from roadproof.extensions.drivers.stepped import beside_change, labels_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Specification
-from roadproof.reasons import Reason, Why
+from roadproof.reasons import Reason, ReasonKind
 from roadproof.runtime.canonical import digest
 from roadproof.semantics.exact.algebraic import Point, bounds
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.judging import judge
 from roadproof.semantics.exact.truth import TruthSet
 
 _ROWS = 10  # in which a drive of a scenario is looked for
@@ -44,10 +45,10 @@ _NEAR = Fraction(1, 10)  # m from the boundary
 _PARTS = (Fraction(1, 2), Fraction(3, 8), Fraction(1, 4), Fraction(1, 8))  # of a span, from its lower end
 
 
-def settle_lines(claim: Claim, plate: Plate) -> Answer:
+def decide_lines(claim: Claim, plate: Plate) -> ClaimAnswer:
     """Return where on the lines of a plate the formula of a claim holds."""
     home = claim.home
-    if MODELS[plate.model].is_stepped:
+    if driver_model(plate.model).is_stepped:
         lines = lines_of_labels(plate, _labels(claim, plate))
     else:
         lines = lines_of_truths(plate, _truths(claim, plate))
@@ -59,15 +60,15 @@ def settle_lines(claim: Claim, plate: Plate) -> Answer:
         plate=plate,
         lines=lines,
     )
-    return Answer(claim, file)
+    return ClaimAnswer(claim, file)
 
 
-def settle_beside(claim: Claim, mode: BesideBoundary) -> Answer:
+def decide_beside(claim: Claim, mode: BesideBoundary) -> ClaimAnswer:
     """Return a drive on one side of the boundary of a plate, of what is preferred where there is one."""
     home, reading = claim.home, reading_of(claim)
     plane, model, side = mode.plate.plane, mode.plate.model, mode.side
     places: Iterable[dict[str, Fraction]]
-    if MODELS[model].is_stepped:
+    if driver_model(model).is_stepped:
         places = beside_change(plane, _labels(claim, mode.plate), side == "unpreventable")
     else:
         places = beside_boundary(plane, _truths(claim, mode.plate), side)
@@ -77,36 +78,39 @@ def settle_beside(claim: Claim, mode: BesideBoundary) -> Answer:
         for also in mode.of_texts:
             shown = first_drive(plane, model, rows, side, home, reading, also, most=len(rows))
             if not isinstance(shown, Reason):
-                return Answer(claim, shown[1])
-    found = first_drive(plane, model, places, side, home, reading)
-    return undecided(claim, found) if isinstance(found, Reason) else Answer(claim, found[1])
+                return ClaimAnswer(claim, shown[1])
+    drive = first_drive(plane, model, places, side, home, reading)
+    return undecided(claim, drive) if isinstance(drive, Reason) else ClaimAnswer(claim, drive[1])
 
 
 def _truths(claim: Claim, plate: Plate) -> Truths:
     """Return where on each line a collision is unpreventable; worked out once."""
     home, values = claim.home, reading_of(claim).values
     boundary = read_claim(home, boundary_text(MANOEUVRES[plate.manoeuvre], plate.model, plate.fixed))
-    of_motion = PARAMETERS if RATE in plate.fixed else ()
-    key = _truths, digest(plate, parameters_in(home.library, [boundary.formula], values, more=of_motion))
-    known = home.worked_out
+    of_motion = parameters_of(plate.model) if RATE in plate.fixed else ()
+    key = (
+        _truths,
+        digest(plate, parameters_in(home.library, [boundary.formula], values, further_names=of_motion)),
+    )
+    known = home.memo
     if key not in known:
         known[key] = exact_truths(home, plate, values)
-    found: Truths = known[key]
-    return found
+    truths: Truths = known[key]
+    return truths
 
 
 def _labels(claim: Claim, plate: Plate) -> Labels:
     """Return at which places of each line the boxes touch; worked out once."""
-    known, key = claim.home.worked_out, (_labels, digest(plate))
+    known, key = claim.home.memo, (_labels, digest(plate))
     if key not in known:
         known[key] = labels_of(plate.plane)
-    found: Labels = known[key]
-    return found
+    labels: Labels = known[key]
+    return labels
 
 
 def judged_drive(
     manoeuvre: Manoeuvre,
-    model: ModelName,
+    model: str,
     values: Values,
     side: Side,
     specification: Specification,
@@ -135,17 +139,17 @@ def beside_boundary(plane: Plane, lines: tuple[TruthSet, ...], side: Side) -> It
 def _places(plane: Plane, true: TruthSet, side: Side) -> Iterator[Fraction]:
     """Places with few digits that are on the wanted side of an end of a span; then some of each span."""
     low, high = plane.along
-    wanted = side == "unpreventable"
+    is_inside = side == "unpreventable"
     ends = [cut.point for cut in reversed(true.cuts)] or [high if side == "preventable" else low]
     for end in ends:
         middle = _near(end, _NEAR / 100)
         for step in (_NEAR, -_NEAR, _NEAR / 10, -_NEAR / 10):
             place = Fraction(round((middle + step) * 100), 100)
-            if low <= place <= high and true.at(place) is wanted:
+            if low <= place <= high and true.at(place) is is_inside:
                 yield place
     near = (_near(cut.point, (high - low) / _FINE) for cut in true.cuts)
     for one, other in pairwise(sorted((low, *near, high))):
-        if true.at((one + other) / 2) is wanted and one < other:
+        if true.at((one + other) / 2) is is_inside and one < other:
             yield from (one + (other - one) * part for part in _PARTS)
 
 
@@ -157,7 +161,7 @@ def _near(point: Point, width: Fraction) -> Fraction:
 
 def first_drive(
     plane: Plane,
-    model: ModelName,
+    model: str,
     candidates: Iterable[dict[str, Fraction]],
     side: Side,
     specification: Specification,
@@ -171,7 +175,7 @@ def first_drive(
     A drive that is rejected, though nothing else is asked of it, contradicts the boundary: no other is tried.
     But places of which the boundary says more than a drive can show are passed over once one is rejected.
     """
-    reason = Why.NO_PLACE(side)
+    reason = ReasonKind.NO_PLACE(side)
     tried, manoeuvre, is_met = 0, plane.manoeuvre, False
     without = partial(_is_without_drive, manoeuvre, model, specification, reading)
     left = (x for x in candidates if not (is_met and without(x)))
@@ -180,23 +184,23 @@ def first_drive(
             return values, judged_drive(manoeuvre, model, values, side, specification, reading, also)
         except RejectedError as error:
             if not is_met and side == "preventable" and not also and without(values):
-                is_met, reason = True, Why.PASSED()
+                is_met, reason = True, ReasonKind.PASSED()
                 continue
-            tried, reason = tried + 1, Why.TOLD(error)
+            tried, reason = tried + 1, ReasonKind.TOLD(error)
             if not also:
-                told = ", ".join(f"{name}={value}" for name, value in values.items())
-                return Why.CONTRADICTS_BOUNDARY(told, side, reason)
+                values_text = ", ".join(f"{name}={value}" for name, value in values.items())
+                return ReasonKind.CONTRADICTS_BOUNDARY(values_text, side, reason)
         except InputError as error:
-            reason = Why.TOLD(error)
+            reason = ReasonKind.TOLD(error)
         if tried == most:
             break
     return reason
 
 
 def _is_without_drive(
-    manoeuvre: Manoeuvre, model: ModelName, home: Specification, reading: DriverSettings, values: Values
+    manoeuvre: Manoeuvre, model: str, home: Specification, reading: DriverSettings, values: Values
 ) -> bool:
-    """Whether no drive of a preventable cut-in is to be expected from these values.
+    """Return whether no drive of a preventable cut-in is to be expected from these values.
 
     Either SV passes POV, which then may hit it from behind; or a gate never opens, and the formula of a
     driver is about one who brakes. False where there is no exact drive.
@@ -204,7 +208,8 @@ def _is_without_drive(
     start = start_of(manoeuvre, values)
     if not isinstance(start, CutIn):
         return False
-    if model == "careful" and reading.choices.cc_gate != "none" and start.dV0 <= 0:
+    law = driver_model(model).law
+    if law is not None and law.never_brakes(start, reading):
         return True
     try:
         drive = drive_of(manoeuvre, model, values, reading)

@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING, Protocol, TypeAlias
 from roadproof.errors import InputError
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.extensions.drivers.driving import OWN_LANE, DriverSettings, drive_of, rest_of, road_of
-from roadproof.extensions.drivers.lines import Line as Drawn
+from roadproof.extensions.drivers.driver_settings import DriverSettings
+from roadproof.extensions.drivers.driving import OWN_LANE, drive_of, rest_of, road_of
 from roadproof.extensions.drivers.lines import (
+    PlateLine,
     Side,
     boundary_text,
     claim_of,
     end_of,
-    told_line,
+    line_of_truth,
     truths,
     with_also,
 )
@@ -30,8 +31,8 @@ from roadproof.extensions.drivers.manoeuvres import (
     is_possible,
     signals_of,
 )
-from roadproof.extensions.drivers.models import MODELS, ModelName
-from roadproof.extensions.drivers.preventable.plate import Line, Plate
+from roadproof.extensions.drivers.models import driver_model
+from roadproof.extensions.drivers.preventable.plate import Plate, PlateLineData
 from roadproof.extensions.drivers.stepped import labels_of, places_of, spans_of
 from roadproof.library.bind import values_with
 from roadproof.library.elaborate import read_claim
@@ -54,16 +55,18 @@ def exact_truths(home: Specification, plate: Plate, values: Mapping[str, Fractio
     return tuple(truths(home, plate.plane, plate.model, values))
 
 
-def lines_of_truths(plate: Plate, true: Truths) -> tuple[Line, ...]:
+def lines_of_truths(plate: Plate, true: Truths) -> tuple[PlateLineData, ...]:
     """Return the lines of a plate as files have them."""
-    return tuple(Line.of(told_line(row, x)) for row, x in zip(plate.plane.rows, true, strict=True))
+    return tuple(
+        PlateLineData.of(line_of_truth(row, x)) for row, x in zip(plate.plane.rows, true, strict=True)
+    )
 
 
-def lines_of_labels(plate: Plate, labels: Labels) -> tuple[Line, ...]:
+def lines_of_labels(plate: Plate, labels: Labels) -> tuple[PlateLineData, ...]:
     """Return the lines of a plate of a controller that is stepped, as files have them."""
     places, rows = places_of(plate.plane), plate.plane.rows
     spans = (tuple((end_of(a), end_of(b)) for a, b in spans_of(places, x)) for x in labels)
-    return tuple(Line.of(Drawn(row, x)) for row, x in zip(rows, spans, strict=True))
+    return tuple(PlateLineData.of(PlateLine(row, x)) for row, x in zip(rows, spans, strict=True))
 
 
 def fault_of(file: "BoundaryFile", library: Library) -> str:
@@ -72,23 +75,25 @@ def fault_of(file: "BoundaryFile", library: Library) -> str:
     Raises ``InputError`` and ``UsageError`` for a plate that is none.
     """
     home, plate = library.select(file.set, file.options), file.plate
-    wanted = boundary_text(MANOEUVRES[plate.manoeuvre], plate.model, plate.fixed)
-    if plate.manoeuvre not in MODELS[plate.model].manoeuvres:
+    expected = boundary_text(MANOEUVRES[plate.manoeuvre], plate.model, plate.fixed)
+    if plate.manoeuvre not in driver_model(plate.model).manoeuvres:
         raise InputError(f"model={plate.model} says nothing of manoeuvre={plate.manoeuvre}")
-    if read_claim(home, file.claim).formula != read_claim(home, wanted).formula:
-        return f"its formula is {file.claim[:80]}, but that of its model is {wanted}"
+    if read_claim(home, file.claim).formula != read_claim(home, expected).formula:
+        return f"its formula is {file.claim[:80]}, but that of its model is {expected}"
     if plate.lines != len(file.lines):
         return f"it has {len(file.lines)} lines, but {plate.lines} are asked for"
     known = _worked_out(home, plate, values_with(library, file.parameters))
-    wrong = next((x for told, x in zip(file.lines, known, strict=True) if told != x), None)
+    wrong = next((x for stated, x in zip(file.lines, known, strict=True) if stated != x), None)
     if wrong is None:
         return ""
     across = MANOEUVRES[plate.manoeuvre].across
     return f"it says otherwise at {across}={wrong.at} than its formula or its motion"
 
 
-def _worked_out(home: Specification, plate: Plate, values: Mapping[str, Fraction]) -> tuple[Line, ...]:
-    if MODELS[plate.model].is_stepped:
+def _worked_out(
+    home: Specification, plate: Plate, values: Mapping[str, Fraction]
+) -> tuple[PlateLineData, ...]:
+    if driver_model(plate.model).is_stepped:
         return lines_of_labels(plate, labels_of(plate.plane))
     return lines_of_truths(plate, exact_truths(home, plate, values))
 
@@ -98,7 +103,7 @@ def _worked_out(home: Specification, plate: Plate, values: Mapping[str, Fraction
 
 def side_file(
     manoeuvre: Manoeuvre,
-    model: ModelName,
+    model: str,
     values: Values,
     side: Side,
     specification: Specification,
@@ -130,7 +135,7 @@ def reading_of(claim: Claim) -> DriverSettings:
 
 
 class BesideBoundary(Protocol):
-    """How a claim about a drive beside a boundary is asked (``claims.Beside``)."""
+    """A form of claims about drives beside a boundary (``claims.Beside``)."""
 
     @property
     def plate(self) -> Plate: ...
@@ -153,10 +158,10 @@ def start_of(claim: Claim, mode: BesideBoundary, file: DriveFile) -> tuple[dict[
     manoeuvre, model, reading = MANOEUVRES[mode.plate.manoeuvre], mode.plate.model, reading_of(claim)
     for at in _starts(mode.plate, file.drive):
         for also in ("", *mode.of_texts):
-            wanted = side_file(manoeuvre, model, at, mode.side, claim.home, reading, also)
-            if wanted == file:
+            expected = side_file(manoeuvre, model, at, mode.side, claim.home, reading, also)
+            if expected == file:
                 return at, also
-            if wanted.drive != file.drive:
+            if expected.drive != file.drive:
                 break
     return None
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Final, Literal
 from roadproof.evidence.answer_files import OwnEvidence
 from roadproof.evidence.checking import other_readings
 from roadproof.evidence.codec import Doc
-from roadproof.evidence.finding import Acceptance, Finding
-from roadproof.extensions.drivers.preventable.plate import Line, Plate
+from roadproof.evidence.finding import Acceptance, Finding, parameter_remark
+from roadproof.extensions.drivers.preventable.plate import Plate, PlateLineData
 from roadproof.library.bind import default_values
 from roadproof.library.specification import Library
-from roadproof.reasons import NO_REASON, Why
+from roadproof.reasons import NO_REASON, ReasonKind
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
@@ -24,14 +24,14 @@ BOUNDARY: Final = "roadproof/boundary/1"
 
 @dataclass(frozen=True, kw_only=True)
 class BoundaryFile(OwnEvidence):
-    """Where on the lines of a plate a formula holds, with exact ends."""
+    """The places on the lines of a plate at which a formula holds, with exact ends."""
 
     schema: Literal["roadproof/boundary/1"] = BOUNDARY
     parameters: Annotated[
         Mapping[str, Fraction], Doc("Values of parameters on which it depends, in SI units.")
     ]
     plate: Plate
-    lines: tuple[Line, ...]
+    lines: tuple[PlateLineData, ...]
 
     def fault_for(self, claim: "Claim") -> str:
         """Return why it is about another claim: other parameters, or another plate."""
@@ -43,10 +43,10 @@ class BoundaryFile(OwnEvidence):
         """Return what the file shows: lines are worked out again from the formula or the model's motion."""
         from roadproof.extensions.drivers.preventable.boundary import fault_of  # loads the models
 
-        reason = Why.TOLD(fault) if (fault := fault_of(self, library)) else NO_REASON
+        reason = ReasonKind.TOLD(fault) if (fault := fault_of(self, library)) else NO_REASON
         outcome = Acceptance.REJECTED if reason else Acceptance.ACCEPTED
         declared = default_values(library)
         other = [f"{name}={x}" for name, x in sorted(self.parameters.items()) if declared.get(name) != x]
-        told = f"with {', '.join(other)}" if other else "declared parameters"
-        checked = () if reason else ("worked out again", told, *other_readings(self.options, library))
+        readings = other_readings(self.options, library)
+        checked = () if reason else ("worked out again", parameter_remark(other), *readings)
         return Finding(str(path), "boundary", outcome, reason, Verdict.DERIVED, "", self.claim, checked)

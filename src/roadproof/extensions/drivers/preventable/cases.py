@@ -6,20 +6,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.frontends.report.cases import (
-    Case,
-    state_of,
-)
+from roadproof.frontends.report.cases import Case, state_of
 from roadproof.frontends.report.question_cases import written
 from roadproof.library.specification import Specification
 from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:
-    from roadproof.extensions.drivers.preventable.view import LemmaResult, Plate
+    from roadproof.extensions.drivers.preventable.view import LemmaResult, PlateResult
 
 
 def plate_cases(
-    plates: Sequence[Plate],
+    plates: Sequence[PlateResult],
     lemmas: Sequence[LemmaResult],
     specification: Specification,
     files: Mapping[str, Path],

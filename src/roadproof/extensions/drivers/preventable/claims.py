@@ -1,10 +1,10 @@
-"""How claims about plates are asked: where a formula holds on lines, and for drives beside that boundary."""
+"""The claims about plates: where a formula holds on lines, and drives beside that boundary."""
 
 from collections.abc import Mapping
 from dataclasses import field
 from typing import ClassVar, Literal
 
-from roadproof.evidence.answer import Answer
+from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.claim import Claim, OwnMode
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
@@ -17,7 +17,7 @@ from roadproof.verdict import Verdict
 
 @dataclass(frozen=True)
 class Lines(OwnMode):
-    """On each line of a plate it is to be worked out where the formula holds.
+    """A claim that asks for the places at which the formula holds, on each line of a plate.
 
     ``readings``: options on which the motion of the model depends, where no formula describes it.
     """
@@ -25,11 +25,18 @@ class Lines(OwnMode):
     plate: Plate
     readings: Mapping[str, str] = field(default_factory=dict)
 
-    def settle(self, claim: Claim) -> Answer:
-        """Return where on the lines of the plate the formula of a claim holds."""
-        from roadproof.extensions.drivers.preventable.beside import settle_lines  # loads the models
+    @property
+    def relies_on(self) -> tuple[str, ...]:
+        """The entry of the driver model."""
+        from roadproof.extensions.drivers.models import entry_of  # loads the models
 
-        return settle_lines(claim, self.plate)
+        return (entry_of(self.plate.model),)
+
+    def decide(self, claim: Claim) -> ClaimAnswer:
+        """Return where on the lines of the plate the formula of a claim holds."""
+        from roadproof.extensions.drivers.preventable.beside import decide_lines  # loads the models
+
+        return decide_lines(claim, self.plate)
 
     def verdict_of(self, evidence: object) -> Verdict | None:
         """DERIVED where a file says so for the lines."""
@@ -51,11 +58,18 @@ class Beside(OwnMode):
     of: tuple[Formula, ...] = ()
     of_texts: tuple[str, ...] = field(default=(), compare=False)
 
-    def settle(self, claim: Claim) -> Answer:
-        """Return a drive on the side of the boundary of the plate."""
-        from roadproof.extensions.drivers.preventable.beside import settle_beside  # loads the models
+    @property
+    def relies_on(self) -> tuple[str, ...]:
+        """The entry of the driver model."""
+        from roadproof.extensions.drivers.models import entry_of  # loads the models
 
-        return settle_beside(claim, self)
+        return (entry_of(self.plate.model),)
+
+    def decide(self, claim: Claim) -> ClaimAnswer:
+        """Return a drive on the side of the boundary of the plate."""
+        from roadproof.extensions.drivers.preventable.beside import decide_beside  # loads the models
+
+        return decide_beside(claim, self)
 
     def verdict_of(self, evidence: object) -> Verdict | None:
         """WITNESSED by a drive."""

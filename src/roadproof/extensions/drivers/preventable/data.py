@@ -1,15 +1,14 @@
-"""What is asked of driver models, and the answer of ``roadproof preventable``, as plain data."""
+"""The question and the answer of ``roadproof preventable`` as plain data."""
 
 from collections.abc import Mapping
 from fractions import Fraction
 from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers import shared
+from roadproof.evidence.answers import headings, shared
 from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 from roadproof.extensions.drivers.lines import Side
 from roadproof.extensions.drivers.manoeuvres import ManoeuvreName
-from roadproof.extensions.drivers.models import ModelName
-from roadproof.extensions.drivers.preventable.plate import Line, Range
+from roadproof.extensions.drivers.preventable.plate import PlateLineData, Range
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict
 
@@ -30,7 +29,7 @@ class Choice:
 
 
 @dataclass(frozen=True, kw_only=True)
-class AskedPlates:
+class PlateRequest:
     """Driver models over planes of initial values of a manoeuvre."""
 
     manoeuvre: ManoeuvreName
@@ -38,7 +37,7 @@ class AskedPlates:
         Number | None,
         Doc("The scenario that drives should be of, where the manoeuvre was asked for by its number."),
     ] = None
-    models: Annotated[tuple[ModelName, ...], Rule(least=1, unique=True)]
+    models: Annotated[tuple[Name, ...], Rule(least=1, unique=True)]
     fixed: Annotated[Mapping[str, Fraction], Doc("Initial values of all plates by name, in SI units.")]
     sheet: Annotated[tuple[Choice, ...], Doc("There is a plate for each choice of these.")]
     along: Annotated[Range, Doc("The range of the initial value that each line runs along.")]
@@ -62,7 +61,7 @@ class SideDrive:
             "none."
         ),
     ]
-    drive: shared.KeptDrive
+    drive: shared.DriveField
     reason: shared.Reason
 
 
@@ -71,7 +70,7 @@ class PlateData:
     """One model over the plane of two initial values."""
 
     name: Name
-    model: Annotated[ModelName, Doc("The driver model.")]
+    model: Annotated[Name, Doc("The driver model.")]
     fixed: Values
     verdict: Annotated[SideVerdict, Doc("Whether each side that the plane has is shown by a drive.")]
     formula: Annotated[
@@ -96,7 +95,7 @@ class PlateData:
             "the ends are worked out from the motion, exactly, and the formula is of the drives."
         ),
     ]
-    lines: tuple[Line, ...]
+    lines: tuple[PlateLineData, ...]
     boundary: Annotated[
         str | None, LEFT_OUT, Doc("The file that says where the lines are; left out without --out.")
     ] = None
@@ -113,13 +112,13 @@ class LemmaData:
     claim: shared.Formula
     assuming: shared.Assuming
     verdict: ClaimVerdict
-    certificate: shared.KeptCertificate
+    certificate: shared.CertificateField
     reason: shared.Reason
 
 
 @dataclass(frozen=True, kw_only=True)
-class PreventableData(shared.Heading):
-    """From which initial values a driver prevents a collision."""
+class PreventableData(headings.AnswerHeading):
+    """The answer of ``preventable``: the initial values from which a driver prevents a collision."""
 
     schema: Literal["roadproof/preventable/1"] = SCHEMA
     set: shared.SetName

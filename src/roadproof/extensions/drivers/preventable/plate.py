@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 from roadproof.evidence.codec import Doc, Rule
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, ManoeuvreName, Plane, plane_of
-from roadproof.extensions.drivers.models import ModelName
 from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
@@ -20,7 +19,7 @@ class Plate:
     """One model over the plane of two initial values, in SI units."""
 
     manoeuvre: ManoeuvreName
-    model: Annotated[ModelName, Doc("The driver model.")]
+    model: Annotated[str, Rule(least=1), Doc("The driver model.")]
     fixed: Annotated[Mapping[str, Fraction], Doc("Initial values that all places share, by name.")]
     along: Annotated[Range, Doc("The range of the initial value that each line runs along.")]
     across: Annotated[Range, Doc("The range of the initial value that differs from line to line.")]
@@ -33,7 +32,7 @@ class Plate:
 
 
 @dataclass(frozen=True, kw_only=True)
-class End:
+class SpanEndData:
     """An end of a span."""
 
     near: Annotated[float, Doc("Rounded to a millionth.")]
@@ -43,12 +42,12 @@ class End:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line:
-    """Where along a line a collision is unpreventable."""
+class PlateLineData:
+    """A line of a plate with the spans in which a collision is unpreventable."""
 
     at: Annotated[Fraction, Doc("The initial value that differs from line to line, in SI units.")]
     unpreventable: Annotated[
-        tuple[tuple[End, End], ...],
+        tuple[tuple[SpanEndData, SpanEndData], ...],
         Doc(
             "Spans of the line in which the formula is true, from and to; on a stepped plate, first and last "
             "of neighbouring places at which it is."
@@ -56,20 +55,21 @@ class Line:
     ]
 
     @staticmethod
-    def of(line: "drawn.Line") -> "Line":
+    def of(line: "drawn.PlateLine") -> "PlateLineData":
         """Return a line as files have it."""
         spans = tuple(
-            (End(near=a.near, exact=a.exact), End(near=b.near, exact=b.exact)) for a, b in line.spans
+            (SpanEndData(near=a.near, exact=a.exact), SpanEndData(near=b.near, exact=b.exact))
+            for a, b in line.spans
         )
-        return Line(at=line.at, unpreventable=spans)
+        return PlateLineData(at=line.at, unpreventable=spans)
 
     @property
-    def drawn(self) -> "drawn.Line":
+    def drawn(self) -> "drawn.PlateLine":
         """The inverse of ``of``."""
         from roadproof.extensions.drivers import lines as drawn
 
         spans = (
-            (drawn.End(float(a.near), a.exact), drawn.End(float(b.near), b.exact))
+            (drawn.SpanEnd(float(a.near), a.exact), drawn.SpanEnd(float(b.near), b.exact))
             for a, b in self.unpreventable
         )
-        return drawn.Line(self.at, tuple(spans))
+        return drawn.PlateLine(self.at, tuple(spans))

@@ -4,25 +4,38 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
-from typing import Any, ClassVar, get_args
+from typing import ClassVar, get_args
 
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.answer import Answer
-from roadproof.evidence.claim import Claim, Mode, parameters_in, valid_under
+from roadproof.evidence.answer import ClaimAnswer
+from roadproof.evidence.assuming import valid_under
+from roadproof.evidence.claim import Claim, Mode, parameters_in
 from roadproof.evidence.codec import read
 from roadproof.evidence.subject import OTHER, Subject, SubjectKind
 from roadproof.extensions.drivers import gradual
-from roadproof.extensions.drivers.driving import OPTIONS, PARAMETERS, DriverSettings, require
-from roadproof.extensions.drivers.lemmas import Lemma, chosen, idle, lemmas_for
+from roadproof.extensions.drivers.choices import chosen, idle
+from roadproof.extensions.drivers.driver_model import DriverModel
+from roadproof.extensions.drivers.driver_settings import DriverSettings
+from roadproof.extensions.drivers.driving import require
+from roadproof.extensions.drivers.lemmas import Lemma
 from roadproof.extensions.drivers.lines import SIDES, Side, boundary_text, open_claim
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, Manoeuvre, Values
-from roadproof.extensions.drivers.models import Model, manoeuvre_of, models_for, parts_of
+from roadproof.extensions.drivers.models import (
+    DRIVERS,
+    boundary_name,
+    lemmas_for,
+    manoeuvre_of,
+    models_for,
+    options_of,
+    parameters_of,
+    parts_of,
+)
 from roadproof.extensions.drivers.preventable import data
 from roadproof.extensions.drivers.preventable.claims import Beside, Lines
-from roadproof.extensions.drivers.preventable.plate import Plate as Asked
+from roadproof.extensions.drivers.preventable.plate import Plate
 from roadproof.extensions.drivers.preventable.view import (
     LemmaResult,
-    Plate,
+    PlateResult,
     PreventableView,
     Shown,
     lemma_data,
@@ -32,10 +45,10 @@ from roadproof.extensions.drivers.preventable.view import (
 )
 from roadproof.library.elaborate import read_claim, read_tree
 from roadproof.library.motion import value_texts
-from roadproof.library.specification import unknown
+from roadproof.library.specification import unknown_name
 from roadproof.logic.formula import Formula
 from roadproof.questions.basis import Basis
-from roadproof.questions.question import Answers, Place, Steps, heading_of
+from roadproof.questions.question import Answers, EvidencePlace, Steps, heading_of
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 
@@ -54,7 +67,7 @@ class PreventableQuestion:
     kind: ClassVar[str] = "preventable"
     basis: Basis
     manoeuvre: Manoeuvre
-    models: tuple[Model, ...]
+    models: tuple[DriverModel, ...]
     fixed: Values
     sheet: Mapping[str, tuple[Fraction, ...]]
     along: tuple[Fraction, Fraction]
@@ -69,9 +82,9 @@ class PreventableQuestion:
         return Work(self.basis.effort, FOR_A_LEMMA)
 
     @property
-    def asked(self) -> data.AskedPlates:
-        """What is asked as data."""
-        return data.AskedPlates(
+    def settings(self) -> data.PlateRequest:
+        """The question as data."""
+        return data.PlateRequest(
             manoeuvre=self.manoeuvre.name,
             scenario=self.scenario,  # type: ignore[arg-type]  # as it was read
             models=tuple(x.name for x in self.models),
@@ -84,39 +97,46 @@ class PreventableQuestion:
         )
 
     @classmethod
-    def of(cls, basis: Basis, asked: object, where: str) -> "PreventableQuestion":
+    def of(cls, basis: Basis, settings: object, where: str) -> "PreventableQuestion":
         """Return the question that plain data ask. Raises ``InputError``."""
-        said = read(data.AskedPlates, asked, where)
-        kind = MANOEUVRES[said.manoeuvre]
+        request = read(data.PlateRequest, settings, where)
+        kind = MANOEUVRES[request.manoeuvre]
         try:
-            if said.scenario is not None and manoeuvre_of(str(said.scenario))[0] != said.manoeuvre:
-                raise UsageError(f"scenario {said.scenario} is no {said.manoeuvre}")
-            found = cls(
+            if request.scenario is not None and manoeuvre_of(str(request.scenario))[0] != request.manoeuvre:
+                raise UsageError(f"scenario {request.scenario} is no {request.manoeuvre}")
+            question = cls(
                 basis,
                 kind,
-                models_for(kind.name, said.models),
-                said.fixed,
-                {x.name: x.values for x in said.sheet},
-                said.along,
-                said.across,
-                said.lines,
-                said.lemmas,
-                said.scenario,
+                models_for(kind.name, request.models),
+                request.fixed,
+                {x.name: x.values for x in request.sheet},
+                request.along,
+                request.across,
+                request.lines,
+                request.lemmas,
+                request.scenario,
             )
-            found.check()
+            question.check()
         except UsageError as error:
             raise InputError(f"{where}: {error}") from None
-        return found
+        return question
 
     def check(self) -> None:
         """Raises ``UsageError`` and ``InputError`` for values that no plate has, and for too many plates."""
         kind, known = self.manoeuvre, self.manoeuvre.quantities
         require(self.basis.specification, self.basis.all_values())
+        for model in self.models:
+            name = boundary_name(kind.name, model.name)
+            if model.law is not None and name not in self.basis.specification.definitions:
+                needed = model.law.specification or DRIVERS
+                raise UsageError(
+                    f"there is no definition '{name}': the model needs the specification '{needed}'"
+                )
         if not 2 <= self.rows <= data.MOST_LINES:
             raise UsageError(f"lines={self.rows}: a plate has between 2 and {data.MOST_LINES}")
         for name in (*self.fixed, *self.sheet):
             if name not in known:
-                raise UsageError(f"{name}: {unknown('initial value of a ' + kind.name, name, known)}")
+                raise UsageError(f"{name}: {unknown_name('initial value of a ' + kind.name, name, known)}")
             if name in (kind.line, kind.across) or (name in self.fixed and name in self.sheet):
                 raise UsageError(f"{name} varies on the plate: give a range, or omit it")
         for name, (low, high) in ((kind.line, self.along), (kind.across, self.across)):
@@ -132,15 +152,15 @@ class PreventableQuestion:
                 gradual.check_gradual(plate.model, values, self.reading)
 
     @cached_property
-    def plates(self) -> dict[str, Asked]:
+    def plates(self) -> dict[str, Plate]:
         """The plates by name: for each choice of the sheet's values, each model."""
-        found: dict[str, Asked] = {}
+        plates: dict[str, Plate] = {}
         for values in product(*self.sheet.values()):
             fixed = {**self.fixed, **dict(zip(self.sheet, values, strict=True))}
-            told = "-".join(f"{name}-{value}".replace("/", "_") for name, value in fixed.items())
+            text = "-".join(f"{name}-{value}".replace("/", "_") for name, value in fixed.items())
             for model in self.models:
-                name = f"{model.name}-{told}" if told else model.name
-                found[name] = Asked(
+                name = f"{model.name}-{text}" if text else model.name
+                plates[name] = Plate(
                     manoeuvre=self.manoeuvre.name,
                     model=model.name,
                     fixed=fixed,
@@ -148,20 +168,20 @@ class PreventableQuestion:
                     across=self.across,
                     lines=self.rows,
                 )
-        return found
+        return plates
 
     @property
     def is_gradual(self) -> bool:
-        """Whether the braking of POV grows at a finite rate, which no formula describes."""
+        """Return whether the braking of POV grows at a finite rate, which no formula describes."""
         return gradual.RATE in self.fixed or gradual.RATE in self.sheet
 
     @cached_property
     def lemmas(self) -> dict[str, Lemma]:
         """The lemmas by name."""
         aeb = self.reading.choices.cc_aeb
-        is_said = self.with_lemmas and not self.is_gradual
-        asked = lemmas_for(self.manoeuvre.name, self.models, aeb) if is_said else []
-        return {f"lemma-{lemma.name}": lemma for lemma in asked}
+        is_stated = self.with_lemmas and not self.is_gradual
+        lemmas = lemmas_for(self.manoeuvre.name, self.models, aeb) if is_stated else []
+        return {f"lemma-{lemma.name}": lemma for lemma in lemmas}
 
     @cached_property
     def reading(self) -> DriverSettings:
@@ -198,8 +218,8 @@ class PreventableQuestion:
         plate = self.plates[name]
         stated = gradual.RATE not in plate.fixed
         text = boundary_text(self.manoeuvre, plate.model, plate.fixed)
-        mode = Lines(plate, {} if stated else self._readings)
-        return self._claim(text, mode, more=() if stated else PARAMETERS)
+        mode = Lines(plate, {} if stated else self._readings(plate.model))
+        return self._claim(text, mode, more=() if stated else parameters_of(plate.model))
 
     def side_claim(self, name: str, side: Side) -> Claim:
         """Return the claim that a drive begins on a plate that shows a side."""
@@ -208,25 +228,27 @@ class PreventableQuestion:
         parts = () if self.scenario is None else parts_of(self.scenario, vehicles)
         of = tuple(read_claim(home, x).formula for x in parts)
         text = open_claim(home, self.manoeuvre, plate.model, plate.fixed, side)
-        return self._claim(text, Beside(plate, side, self._readings, of, parts), of, PARAMETERS)
+        mode = Beside(plate, side, self._readings(plate.model), of, parts)
+        return self._claim(text, mode, of, parameters_of(plate.model))
 
-    @cached_property
-    def _readings(self) -> dict[str, str]:
-        return {name: self.reading.options[name] for name in OPTIONS}
+    def _readings(self, model: str) -> dict[str, str]:
+        return {name: self.reading.options[name] for name in options_of(model)}
 
     def _claim(
         self, text: str, mode: Mode, formulas: Sequence[Formula] = (), more: Sequence[str] = ()
     ) -> Claim:
         home = self.basis.specification
         query = read_claim(home, text)
-        occurring = parameters_in(home.library, (query.formula, *formulas), self.basis.values, more=more)
+        occurring = parameters_in(
+            home.library, (query.formula, *formulas), self.basis.values, further_names=more
+        )
         return Claim(query.formula, query.vehicles, query.lanes, mode, occurring, query, home)
 
     def lemma_claim(self, name: str) -> Claim:
         """Return the claim that a lemma holds at the values of its parameters."""
         home, lemma, values = self.basis.specification, self.lemmas[name], self.basis.all_values()
-        said = value_texts(home, {x: values[x] for x in lemma.parameters})
-        return valid_under(home, read_tree(home, lemma.tree, lemma.claim), said)
+        values_text = value_texts(home, {x: values[x] for x in lemma.parameters})
+        return valid_under(home, read_tree(home, lemma.tree, lemma.claim), values_text)
 
     def label(self, name: str) -> str:
         """Return which plate or lemma the claim of a name is about."""
@@ -250,26 +272,26 @@ class PreventableQuestion:
         lemmas = (LemmaResult(x, self.lemma_claim(name), known.get(name)) for name, x in self.lemmas.items())
         return PreventableView(tuple(self._plate(name, known) for name in self.plates), tuple(lemmas))
 
-    def _plate(self, name: str, known: Answers) -> Plate:
-        asked, boundary = self.plates[name], known.get(name)
+    def _plate(self, name: str, known: Answers) -> PlateResult:
+        plate, boundary = self.plates[name], known.get(name)
         shown: list[Shown] = []
         if boundary is not None and boundary.is_final:
             there = sides_of(boundary)
             names: dict[Side, str] = {side: f"{name}-{side}" for side in SIDES}
             shown = [shown_by(side, x, known.get(x), side in there) for side, x in names.items()]
-        return Plate(name, asked.model, asked.fixed, boundary, tuple(shown))
+        return PlateResult(name, plate.model, plate.fixed, boundary, tuple(shown))
 
-    def data(self, view: PreventableView, place: Place, seconds: float) -> data.PreventableData:
+    def data(self, view: PreventableView, place: EvidencePlace, seconds: float) -> data.PreventableData:
         """Return the view as ``--json`` prints it."""
         basis, kind = self.basis, self.manoeuvre
-        said: dict[str, Any] = {"set": basis.specification.set_name, **basis.said()}
         (low, high), (least, most) = self.along, self.across
         lemmas = zip(self.lemmas, view.lemmas, strict=True)
         return data.PreventableData(
             **heading_of(data.SCHEMA, basis),
-            **said,
+            set=basis.specification.set_name,
+            **basis.common_data(),
             manoeuvre=kind.name,
-            scenario=self.asked.scenario,
+            scenario=self.settings.scenario,
             along=(kind.line, str(low), str(high)),
             across=(kind.across, str(least), str(most), str(self.rows)),
             seconds=seconds,
@@ -289,7 +311,7 @@ class PlateBatch:
 
     def steps(self) -> Steps:
         """Yield the claim about the lines, then those about drives."""
-        boundary: Answer = yield self.name, self.lines
+        boundary: ClaimAnswer = yield self.name, self.lines
         there = sides_of(boundary)
         for side, claim in self.sides.items():
             if side in there:

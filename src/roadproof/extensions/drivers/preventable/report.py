@@ -1,6 +1,6 @@
 """Plates to look at: which initial values a driver prevents a collision from, in every form."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import partial
 from itertools import product
@@ -8,63 +8,56 @@ from math import ceil
 from textwrap import wrap
 from typing import Any, TypeAlias
 
-from roadproof.extensions.drivers.lines import End, Line
-from roadproof.extensions.drivers.manoeuvres import Quantity
-from roadproof.extensions.drivers.models import MODELS, parts_of
+from roadproof.extensions.drivers.lines import PlateLine, SpanEnd
+from roadproof.extensions.drivers.manoeuvres import InitialQuantity
+from roadproof.extensions.drivers.models import driver_model, parts_of
 from roadproof.extensions.drivers.preventable.question import PreventableQuestion
-from roadproof.extensions.drivers.preventable.view import LemmaResult, Plate, Shown
+from roadproof.extensions.drivers.preventable.view import LemmaResult, PlateResult, Shown
 from roadproof.extensions.drivers.words import legend
 from roadproof.frontends.report.figures import make_page
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.world.units import UNITS
 
-COLOURS: Mapping[str, str] = {
-    "careful": "#1f5fa8",
-    "r157": "#c44e1b",
-    "eu1426": "#2c8a4b",
-    "rss": "#7d3c98",
-    "fsm": "#8a6d1b",
-}
-_TOKENS = {"careful": "one", "r157": "two", "eu1426": "three", "rss": "four", "fsm": "open"}
-"""The colours of models on pages, as names of the design."""
 _STEPPED = "Single lines: places looked at, stepped at 10 Hz; nothing is claimed between them"
 _LEGEND = 1.9, 0.2  # inches for the name of a model
 _LETTERS = 21  # of a line below the plates, an inch
 _TOLD = 5  # lines of a plate, and spans of a line, that the terminal shows
 
 
-def measured(quantity: Quantity, value: Fraction) -> str:
+def measured(quantity: InitialQuantity, value: Fraction) -> str:
     """A value in its quantity's unit: ``60 km/h``."""
     return f"{float(value / UNITS[quantity.unit][0]):g} {quantity.unit}"
 
 
-def fixed_text(question: PreventableQuestion, plate: Plate) -> str:
-    """What is fixed on a plate."""
+def fixed_text(question: PreventableQuestion, plate: PlateResult) -> str:
+    """Return the initial values that are fixed on a plate, as text."""
     known = question.manoeuvre.quantities
     return ", ".join(f"{name} = {measured(known[name], value)}" for name, value in plate.fixed.items())
 
 
-def shown_symbols(question: PreventableQuestion) -> tuple[Quantity, ...]:
+def shown_symbols(question: PreventableQuestion) -> tuple[InitialQuantity, ...]:
     """The initial values that plates are about, in the order of the manoeuvre."""
     names = {question.manoeuvre.line, question.manoeuvre.across, *question.sheet, *question.fixed}
     return tuple(x for name, x in question.manoeuvre.quantities.items() if name in names)
 
 
-def share_of(question: PreventableQuestion, plate: Plate) -> float:
-    """Which part of the plane is unpreventable: the mean over its lines."""
+def share_of(question: PreventableQuestion, plate: PlateResult) -> float:
+    """Return which part of the plane is unpreventable: the mean over its lines."""
     low, high = question.along
     total = sum(b.near - a.near for x in plate.lines for a, b in x.spans)
     return total / (float(high - low) * len(plate.lines)) if plate.lines else 0.0
 
 
-def as_text(question: PreventableQuestion, plates: Sequence[Plate], lemmas: Sequence[LemmaResult]) -> str:
-    """For the terminal: each plate with some of its lines and its drives, and the lemmas."""
+def as_text(
+    question: PreventableQuestion, plates: Sequence[PlateResult], lemmas: Sequence[LemmaResult]
+) -> str:
+    """Return text for the terminal: each plate with some of its lines and its drives, and the lemmas."""
     known = question.manoeuvre.quantities
     along, across = known[question.manoeuvre.line], known[question.manoeuvre.across]
     lines: list[str] = []
     for plate in plates:
         fixed = fixed_text(question, plate)
-        title = MODELS[plate.model].title
+        title = driver_model(plate.model).title
         lines.append(f"{plate.verdict:<11} {question.manoeuvre.name}, {title}{fixed and f'; {fixed}'}")
         if plate.reason:
             lines.append(f"  {plate.reason}")
@@ -84,13 +77,13 @@ def as_text(question: PreventableQuestion, plates: Sequence[Plate], lemmas: Sequ
                 shown += f" and {len(line.spans) - _TOLD} more"
             lines.append(f"    {across.name} = {measured(across, line.at):<14} {shown}")
         for x in plate.shown:
-            told: str = x.reason
+            result: str = x.reason
             if x.drive is not None:
                 values = ", ".join(
                     f"{name} = {measured(known[name], x.values[name])}" for name in (across.name, along.name)
                 )
-                told = f"a drive at {values}{_scenario_text(question, x)}"
-            lines.append(f"  {x.side}: {told}")
+                result = f"a drive at {values}{_scenario_text(question, x)}"
+            lines.append(f"  {x.side}: {result}")
     lines += [legend(shown_symbols(question))] if plates else []
     for proved in lemmas:
         lines.append(f"{proved.verdict:<11} {proved.lemma.name}: {proved.lemma.title}")
@@ -98,12 +91,12 @@ def as_text(question: PreventableQuestion, plates: Sequence[Plate], lemmas: Sequ
             lines.append(f"  {proved.reason}")
     if question.readings:
         lines.append(f"with {', '.join(question.readings)}")
-    lines += [f"{said}: no boundary that is asked for depends on it" for said in question.idle]
+    lines += [f"{idle}: no boundary that is asked for depends on it" for idle in question.idle]
     return "\n".join(lines)
 
 
 def _scenario_text(question: PreventableQuestion, shown: Shown) -> str:
-    """What the drive is of, where the scenario was asked for."""
+    """Return the scenario of the drive, where the question names one."""
     if question.scenario is None:
         return ""
     whole, happening = parts_of(question.scenario, question.manoeuvre.vehicles)
@@ -114,18 +107,18 @@ def _scenario_text(question: PreventableQuestion, shown: Shown) -> str:
     return f"; no drive that was tried is of scenario {question.scenario}"
 
 
-def _some(lines: Sequence[Line]) -> Sequence[Line]:
+def _some(lines: Sequence[PlateLine]) -> Sequence[PlateLine]:
     """A few lines, first and last with them."""
     if len(lines) <= _TOLD:
         return lines
     return [lines[round(k * (len(lines) - 1) / (_TOLD - 1))] for k in range(_TOLD)]
 
 
-Entry: TypeAlias = tuple[Plate, Line, tuple[End, End]]
+Entry: TypeAlias = tuple[PlateResult, PlateLine, tuple[SpanEnd, SpanEnd]]
 """A span of a line of a plate."""
 
 
-def sheet_of(question: PreventableQuestion, plates: Sequence[Plate]) -> Sheet[Entry]:
+def sheet_of(question: PreventableQuestion, plates: Sequence[PlateResult]) -> Sheet[Entry]:
     """An entry for each span of each line: SI units, ends as numbers and in CSV also exactly."""
     fixed = dict.fromkeys(name for plate in plates for name in plate.fixed)
     along, across = question.manoeuvre.line, question.manoeuvre.across
@@ -147,7 +140,7 @@ def _fixed(name: str, entry: Entry) -> Fraction:
     return entry[0].fixed[name]
 
 
-def draw_sheet(question: PreventableQuestion, plates: Sequence[Plate]) -> Any:
+def draw_sheet(question: PreventableQuestion, plates: Sequence[PlateResult]) -> Any:
     """All plates of a sheet: rows are the second of what is fixed, columns all else; colours are models."""
     names = list(question.sheet)
     beside = [name for name in names if name not in names[1:2]]
@@ -169,8 +162,8 @@ def draw_sheet(question: PreventableQuestion, plates: Sequence[Plate]) -> Any:
             chosen = dict(zip((*beside, *names[1:2]), (*column, *row), strict=True))
             here = [p for p in plates if all(p.fixed.get(name) == value for name, value in chosen.items())]
             _draw_plate(axes, question, here)
-            told = [f"{n} {measured(question.manoeuvre.quantities[n], v)}" for n, v in chosen.items()]
-            axes.set_title(", ".join(told), fontsize=7, loc="left", pad=3)
+            labels = [f"{n} {measured(question.manoeuvre.quantities[n], v)}" for n, v in chosen.items()]
+            axes.set_title(", ".join(labels), fontsize=7, loc="left", pad=3)
             if j == 0:
                 axes.set_ylabel(_label(question, question.manoeuvre.across), fontsize=7)
             if i == len(rows) - 1:
@@ -194,17 +187,17 @@ def _head(figure: Any, question: PreventableQuestion, width: float, height: floa
     fixed = "".join(f", {name} {measured(known[name], value)}" for name, value in question.fixed.items())
     title = f"{question.manoeuvre.name}{fixed}: a collision is unpreventable {what}"
     figure.text(0.2 / width, 1 - 0.22 / height, title, fontsize=9, va="center")
-    for k, said in enumerate(_below(question, width)):
-        figure.text(0.2 / width, (0.1 + 0.12 * k) / height, said, fontsize=5.5, va="center")
+    for k, text in enumerate(_below(question, width)):
+        figure.text(0.2 / width, (0.1 + 0.12 * k) / height, text, fontsize=5.5, va="center")
     for k, model in enumerate(question.models):
         row, column = divmod(k, _models_a_row(width))
         x, y = (0.2 + _LEGEND[0] * column) / width, 1 - (0.45 + _LEGEND[1] * row) / height
-        told = f"─ {model.title}, stepped" if model.is_stepped else f"━ {model.title}"
-        figure.text(x, y, told, fontsize=7, color=COLOURS[model.name], va="center")
+        label = f"─ {model.title}, stepped" if model.is_stepped else f"━ {model.title}"
+        figure.text(x, y, label, fontsize=7, color=model.colour[0], va="center")
 
 
 def _models_a_row(width: float) -> int:
-    """How many names of models stand beside each other on a page so wide (inches)."""
+    """Return how many names of models stand beside each other on a page so wide (inches)."""
     return max(1, int((width - 0.2) / _LEGEND[0]))
 
 
@@ -212,12 +205,12 @@ def _label(question: PreventableQuestion, name: str) -> str:
     return f"{name} [{question.manoeuvre.quantities[name].unit}]"
 
 
-def _draw_plate(axes: Any, question: PreventableQuestion, plates: Sequence[Plate]) -> None:
+def _draw_plate(axes: Any, question: PreventableQuestion, plates: Sequence[PlateResult]) -> None:
     known = question.manoeuvre.quantities
     unit = float(UNITS[known[question.manoeuvre.across].unit][0])
     scale = float(UNITS[known[question.manoeuvre.line].unit][0])
     for plate in plates:
-        colour = COLOURS[plate.model]
+        colour = driver_model(plate.model).colour[0]
         if plate.stepped:
             _draw_places(axes, plate, colour, scale, unit)
         else:
@@ -234,8 +227,8 @@ def _draw_plate(axes: Any, question: PreventableQuestion, plates: Sequence[Plate
     axes.tick_params(labelsize=6)
 
 
-def _draw_places(axes: Any, plate: Plate, colour: str, scale: float, unit: float) -> None:
-    """Each span of each line by itself: nothing is claimed of what lies between lines and places."""
+def _draw_places(axes: Any, plate: PlateResult, colour: str, scale: float, unit: float) -> None:
+    """Draw each span of each line by itself: no claim is made between lines and places."""
     for line in plate.lines:
         for a, b in line.spans:
             ends, at = [a.near / scale, b.near / scale], [float(line.at) / unit] * 2
@@ -243,9 +236,9 @@ def _draw_places(axes: Any, plate: Plate, colour: str, scale: float, unit: float
 
 
 def _draw_area(
-    axes: Any, plate: Plate, colour: str, scale: float, unit: float, edges: Sequence[float]
+    axes: Any, plate: PlateResult, colour: str, scale: float, unit: float, edges: Sequence[float]
 ) -> None:
-    """From the first to the last end of each line."""
+    """Draw the area between the first and the last end of each line."""
     at = [float(line.at) / unit for line in plate.lines]
     low = [line.spans[0][0].near / scale if line.spans else 0.0 for line in plate.lines]
     high = [line.spans[-1][1].near / scale if line.spans else 0.0 for line in plate.lines]

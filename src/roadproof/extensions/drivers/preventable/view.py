@@ -1,24 +1,24 @@
-"""What the answers about plates show: lines, drives on both sides, lemmas."""
+"""The view of answers about plates: lines, drives on both sides, lemmas."""
 
 from collections.abc import Mapping, Sequence
 
-from roadproof.evidence.answer import Answer, assumed_by
+from roadproof.evidence.answer import ClaimAnswer, assumed_by
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.drivers import gradual
 from roadproof.extensions.drivers.lemmas import Lemma
-from roadproof.extensions.drivers.lines import Line, Side, boundary_text, sides_in
+from roadproof.extensions.drivers.lines import PlateLine, Side, boundary_text, sides_in
 from roadproof.extensions.drivers.manoeuvres import Manoeuvre, Values
-from roadproof.extensions.drivers.models import MODELS, ModelName
+from roadproof.extensions.drivers.models import driver_model
 from roadproof.extensions.drivers.preventable import data
 from roadproof.extensions.drivers.preventable.boundary import start_of
 from roadproof.extensions.drivers.preventable.boundary_file import BoundaryFile
 from roadproof.extensions.drivers.preventable.claims import Beside
-from roadproof.extensions.drivers.preventable.plate import Line as KeptLine
+from roadproof.extensions.drivers.preventable.plate import PlateLineData
 from roadproof.extensions.drivers.stepped import TOLD
-from roadproof.questions.question import Place
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.questions.question import EvidencePlace
+from roadproof.reasons import NO_REASON, Reason, ReasonKind
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict, claim_verdict
 
@@ -37,43 +37,43 @@ class Shown:
     reason: Reason = NO_REASON
     scenario: str = ""
     name: str = ""
-    answer: Answer | None = None
+    answer: ClaimAnswer | None = None
     is_there: bool = True
 
 
 @dataclass(frozen=True)
-class Plate:
+class PlateResult:
     """One model over the plane of two initial values; ``boundary``: the answer about its lines."""
 
     name: str
-    model: ModelName
+    model: str
     fixed: Values
-    boundary: Answer | None = None
+    boundary: ClaimAnswer | None = None
     shown: tuple[Shown, ...] = ()
 
     @property
-    def kept_lines(self) -> tuple[KeptLine, ...]:
+    def file_lines(self) -> tuple[PlateLineData, ...]:
         """The lines as files have them."""
         return lines_in(self.boundary)
 
     @property
-    def lines(self) -> tuple[Line, ...]:
+    def lines(self) -> tuple[PlateLine, ...]:
         """The lines."""
-        return tuple(x.drawn for x in self.kept_lines)
+        return tuple(x.drawn for x in self.file_lines)
 
     @property
     def reason(self) -> Reason:
-        """Why there are no lines."""
+        """Return why there are no lines."""
         return NO_REASON if self.boundary is None else self.boundary.reason
 
     @property
     def stepped(self) -> str:
-        """What is said of a plate whose lines are no exact boundary; empty where they are one."""
-        return TOLD if MODELS[self.model].is_stepped else ""
+        """The note on a plate whose lines are no exact boundary; empty where they are one."""
+        return TOLD if driver_model(self.model).is_stepped else ""
 
     @property
     def motion(self) -> str:
-        """What is said of a plate whose ends are worked out from the motion; empty where a formula says."""
+        """The note on a plate whose ends are computed from the motion; empty where a formula states them."""
         return gradual.TOLD if gradual.RATE in self.fixed else ""
 
     @property
@@ -89,7 +89,7 @@ class LemmaResult:
 
     lemma: Lemma
     claim: Claim
-    answer: Answer | None = None
+    answer: ClaimAnswer | None = None
 
     @property
     def verdict(self) -> ClaimVerdict:
@@ -103,7 +103,7 @@ class LemmaResult:
 
     @property
     def reason(self) -> Reason:
-        """Why it is in doubt."""
+        """Return why it is in doubt."""
         return NO_REASON if self.answer is None else self.answer.reason
 
     @property
@@ -116,29 +116,29 @@ class LemmaResult:
 class PreventableView:
     """The plates and the lemmas, in order."""
 
-    plates: tuple[Plate, ...]
+    plates: tuple[PlateResult, ...]
     lemmas: tuple[LemmaResult, ...]
 
 
-def lines_in(answer: Answer | None) -> tuple[KeptLine, ...]:
+def lines_in(answer: ClaimAnswer | None) -> tuple[PlateLineData, ...]:
     """Return the lines that an answer has; none where it is in doubt."""
-    found = None if answer is None else answer.evidence
-    return found.lines if isinstance(found, BoundaryFile) else ()
+    sides = None if answer is None else answer.evidence
+    return sides.lines if isinstance(sides, BoundaryFile) else ()
 
 
-def sides_of(boundary: Answer) -> frozenset[Side]:
+def sides_of(boundary: ClaimAnswer) -> frozenset[Side]:
     """Return the sides that a plate has more than single places of; none where it is in doubt."""
     file = boundary.evidence
     if not isinstance(file, BoundaryFile):
         return frozenset()
     lines = [x.drawn for x in file.lines]
-    return sides_in(lines, file.plate.along, MODELS[file.plate.model].is_stepped)
+    return sides_in(lines, file.plate.along, driver_model(file.plate.model).is_stepped)
 
 
-def shown_by(side: Side, name: str, answer: Answer | None, is_there: bool) -> Shown:
+def shown_by(side: Side, name: str, answer: ClaimAnswer | None, is_there: bool) -> Shown:
     """Return what an answer shows of a side, which a plate may not have."""
     if answer is None:
-        return Shown(side, {}, reason=NO_REASON if is_there else Why.NO_PLACE(side), is_there=is_there)
+        return Shown(side, {}, reason=NO_REASON if is_there else ReasonKind.NO_PLACE(side), is_there=is_there)
     mode = answer.claim.mode
     start = None
     if answer.drive is not None and isinstance(mode, Beside):
@@ -151,7 +151,7 @@ def shown_by(side: Side, name: str, answer: Answer | None, is_there: bool) -> Sh
 # --- as data -----------------------------------------------------------------------------------------
 
 
-def plate_data(plate: Plate, manoeuvre: Manoeuvre, place: Place) -> data.PlateData:
+def plate_data(plate: PlateResult, manoeuvre: Manoeuvre, place: EvidencePlace) -> data.PlateData:
     """Return a plate as ``--json`` prints it."""
     final = plate.boundary if plate.boundary is not None and plate.boundary.is_final else None
     file = None if final is None else place(plate.name, final)
@@ -163,14 +163,14 @@ def plate_data(plate: Plate, manoeuvre: Manoeuvre, place: Place) -> data.PlateDa
         formula=boundary_text(manoeuvre, plate.model, plate.fixed),
         stepped=plate.stepped,
         motion=plate.motion,
-        lines=plate.kept_lines,
+        lines=plate.file_lines,
         boundary=file if isinstance(file, str) else None,
         shown=tuple(_side_data(x, place) for x in plate.shown),
         reason=plate.reason,
     )
 
 
-def _side_data(shown: Shown, place: Place) -> data.SideDrive:
+def _side_data(shown: Shown, place: EvidencePlace) -> data.SideDrive:
     drive = shown.drive
     return data.SideDrive(
         side=shown.side,
@@ -183,7 +183,7 @@ def _side_data(shown: Shown, place: Place) -> data.SideDrive:
     )
 
 
-def lemma_data(name: str, x: LemmaResult, place: Place) -> data.LemmaData:
+def lemma_data(name: str, x: LemmaResult, place: EvidencePlace) -> data.LemmaData:
     """Return a lemma as ``--json`` prints it."""
     return data.LemmaData(
         name=x.lemma.name,
@@ -200,7 +200,7 @@ def _texts(values: Values) -> Mapping[str, str]:
     return {name: str(value) for name, value in values.items()}
 
 
-def evidence_names(plates: Sequence[Plate]) -> dict[str, str]:
+def evidence_names(plates: Sequence[PlateResult]) -> dict[str, str]:
     """Return the name of the first drive of each plate that has one, by plate."""
     shown = ((x.name, next((y.name for y in x.shown if y.drive is not None), "")) for x in plates)
     return {plate: name for plate, name in shown if name}

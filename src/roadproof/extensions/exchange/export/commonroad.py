@@ -17,12 +17,20 @@ from itertools import pairwise
 from pathlib import Path
 
 from roadproof.extensions.exchange.export.points import centre, centre_in_plane
-from roadproof.extensions.exchange.export.subject import WRITTEN, Layout, Section, Subject, crossed, together
+from roadproof.extensions.exchange.export.subject import (
+    WRITTEN,
+    ExportSubject,
+    RoadCut,
+    Section,
+    allow_lane_change,
+    are_adjacent,
+)
 from roadproof.extensions.exchange.export.user_map import checked_map
 from roadproof.extensions.maps.network import ZONES_ENDING, zones_beside
+from roadproof.extensions.maps.xml_reader import read_xml
+from roadproof.extensions.maps.xml_writer import Element, document, element
+from roadproof.frontends.report.numbers import decimal
 from roadproof.frontends.report.samples import kind_of
-from roadproof.frontends.report.xml import Element, decimal, document, element
-from roadproof.runtime.xml_reader import read_xml
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State
 from roadproof.world.reference_line import ReferenceLine
@@ -45,7 +53,7 @@ _OBSTACLES: Mapping[Kind, str] = {"other": "unknown"}
 
 
 @dataclass(frozen=True)
-class _Cell:
+class _SectionLanelet:
     """A lanelet within one section."""
 
     id: int
@@ -53,19 +61,19 @@ class _Cell:
     section: Section
 
 
-def files(subject: Subject) -> dict[str, bytes]:
+def files(subject: ExportSubject) -> dict[str, bytes]:
     """NAME.xml, and NAME_zones.toml where the map has one or a zone does not follow from ramps.
 
     Raises ``InputError`` for roads that have no lanes side by side, and maps that are others by now.
     """
-    path, known = _map_of(subject)
-    ids = _numbered(subject, known)
+    path, map_elements = _map_of(subject)
+    ids = _vehicle_ids_beside(subject, map_elements)
     nowhere = element("location", *(element(tag, text=text) for tag, text in _NOWHERE.items()))
     root = element(
         "commonRoad",
-        next((x for x in known if x.tag == "location"), nowhere),
+        next((x for x in map_elements if x.tag == "location"), nowhere),
         element("scenarioTags", element("highway"), element("simulated")),
-        *([x for x in known if x.tag in _NETWORK] or _lanelets(subject.layout)),
+        *([x for x in map_elements if x.tag in _NETWORK] or _lanelets(subject.layout)),
         *(_obstacle(subject, ids[name], name, motion) for name, motion in subject.vehicles.items()),
         _problem(subject, max([PROBLEM, *(x + 1 for x in ids.values())])),
         commonRoadVersion=VERSION,
@@ -73,24 +81,24 @@ def files(subject: Subject) -> dict[str, bytes]:
         date=WRITTEN,
         author="roadproof",
         affiliation="roadproof",
-        source=subject.said,
+        source=subject.formula_note,
         timeStepSize=decimal(Fraction(1, subject.rate)),
     )
-    made = {f"{subject.name}.xml": document(root)}
+    contents = {f"{subject.name}.xml": document(root)}
     zones = None if path is None else path.with_name(f"{path.stem}{ZONES_ENDING}")
     if zones is not None and zones.is_file():
-        made[f"{subject.name}{ZONES_ENDING}"] = zones.read_bytes()
+        contents[f"{subject.name}{ZONES_ENDING}"] = zones.read_bytes()
     elif path is None and (entries := [*_zones(subject.layout)]):
-        made[f"{subject.name}{ZONES_ENDING}"] = "\n".join(entries).encode()
-    return made
+        contents[f"{subject.name}{ZONES_ENDING}"] = "\n".join(entries).encode()
+    return contents
 
 
-def numbers(subject: Subject) -> dict[str, int]:
-    """What vehicles are called. Raises ``InputError`` for maps that are others by now."""
-    return _numbered(subject, _map_of(subject)[1])
+def vehicle_ids(subject: ExportSubject) -> dict[str, int]:
+    """Return the ids of vehicles by name. Raises ``InputError`` for maps that are others by now."""
+    return _vehicle_ids_beside(subject, _map_of(subject)[1])
 
 
-def _map_of(subject: Subject) -> tuple[Path | None, list[Element]]:
+def _map_of(subject: ExportSubject) -> tuple[Path | None, list[Element]]:
     """The map in CommonRoad 2020a that the road is from, and what it has; None where there is none."""
     path = checked_map(subject, ".xml")
     root = None if path is None else read_xml(path, "commonRoad")
@@ -99,28 +107,28 @@ def _map_of(subject: Subject) -> tuple[Path | None, list[Element]]:
     return path, list(root)
 
 
-def _numbered(subject: Subject, known: list[Element]) -> dict[str, int]:
+def _vehicle_ids_beside(subject: ExportSubject, map_elements: list[Element]) -> dict[str, int]:
     """Vehicles count from 1, beside a map from the next thousand above its greatest number."""
-    names = (y.get("id", "") for x in known if x.tag in _NETWORK for y in x.iter())
+    names = (y.get("id", "") for x in map_elements if x.tag in _NETWORK for y in x.iter())
     taken = [int(x) for x in names if x.isdecimal()]
     first = 1000 * (max(taken) // 1000 + 1) if taken else 0
     return {name: first + number for name, number in subject.ids.items()}
 
 
-def _rows(layout: Layout) -> list[list[_Cell]]:
+def _rows(layout: RoadCut) -> list[list[_SectionLanelet]]:
     """The lanelets of each section, from left to right."""
-    rows: list[list[_Cell]] = []
+    rows: list[list[_SectionLanelet]] = []
     for section in layout.sections:
         first = FIRST_LANELET + sum(map(len, rows))
-        rows.append([_Cell(first + k, x, section) for k, x in enumerate(section.lanelets)])
+        rows.append([_SectionLanelet(first + k, x, section) for k, x in enumerate(section.lanelets)])
     return rows
 
 
-def _zones(layout: Layout) -> Iterator[str]:
+def _zones(layout: RoadCut) -> Iterator[str]:
     """An entry for each lanelet that is in another zone than the ramps side by side with it say."""
     for row in _rows(layout):
         beside = {
-            str(x.id): str(y.id) for x, y in pairwise(row) if together(x.lanelet, y.lanelet, layout.road)
+            str(x.id): str(y.id) for x, y in pairwise(row) if are_adjacent(x.lanelet, y.lanelet, layout.road)
         }
         attributes = {str(x.id): x.lanelet.attribute for x in row}
         inferred = zones_beside(attributes, beside.items())
@@ -129,7 +137,7 @@ def _zones(layout: Layout) -> Iterator[str]:
                 yield f'[[lanelet]]\nid = {x.id}\nzone = "{x.lanelet.zone}"\n'
 
 
-def _lanelets(layout: Layout) -> Iterator[Element]:
+def _lanelets(layout: RoadCut) -> Iterator[Element]:
     rows = _rows(layout)
     for k, row in enumerate(rows):
         before = {x.lanelet.lane: x.id for x in rows[k - 1]} if k else {}
@@ -140,9 +148,13 @@ def _lanelets(layout: Layout) -> Iterator[Element]:
             refs = [element(tag, ref=str(other)) for tag, other in links if other is not None]
             sides = {"left": row[place - 1] if place else None, "right": [*row, None][place + 1]}
             near = {
-                side: x for side, x in sides.items() if x and together(cell.lanelet, x.lanelet, layout.road)
+                side: x
+                for side, x in sides.items()
+                if x and are_adjacent(cell.lanelet, x.lanelet, layout.road)
             }
-            dashed = {side for side, x in near.items() if crossed(cell.lanelet, x.lanelet, layout.road)}
+            dashed = {
+                side for side, x in near.items() if allow_lane_change(cell.lanelet, x.lanelet, layout.road)
+            }
             refs += [
                 element(f"adjacent{side.title()}", ref=str(x.id), drivingDir="same")
                 for side, x in near.items()
@@ -158,7 +170,9 @@ def _lanelets(layout: Layout) -> Iterator[Element]:
             )
 
 
-def _bound(tag: str, cell: _Cell, across: Fraction, is_dashed: bool, line: ReferenceLine | None) -> Element:
+def _bound(
+    tag: str, cell: _SectionLanelet, across: Fraction, is_dashed: bool, line: ReferenceLine | None
+) -> Element:
     """A side of a lanelet; on a bend its points are so near that lines are within ``_CHORD`` of it."""
     low, high = cell.section.low, cell.section.high
     if line is None:
@@ -186,7 +200,7 @@ def _box(motion: Motion) -> Element:
     return element("rectangle", *(element(tag, text=decimal(size)) for tag, size in sizes.items()))
 
 
-def _obstacle(subject: Subject, number: int, name: str, motion: Motion) -> Element:
+def _obstacle(subject: ExportSubject, number: int, name: str, motion: Motion) -> Element:
     box = _box(motion)
     first, *others = (
         _state("state" if k else "initialState", k, state, motion, subject.file.road.line)
@@ -211,7 +225,7 @@ def _type(motion: Motion) -> str:
 
 
 @dataclass(frozen=True)
-class _Moving:
+class _BoxState:
     """A state as the format has it: the centre of the box in the plane, and what is along its direction."""
 
     place: tuple[Fraction, Fraction] | tuple[float, float]
@@ -220,19 +234,19 @@ class _Moving:
     acceleration: Fraction | float
 
 
-def _moving(state: State, motion: Motion, line: ReferenceLine | None) -> _Moving:
+def _box_state(state: State, motion: Motion, line: ReferenceLine | None) -> _BoxState:
     middle = centre(state, motion.length, motion.width)
     if line is None:
-        return _Moving(middle, Fraction(0), state.v_lon, state.a_lon)
+        return _BoxState(middle, Fraction(0), state.v_lon, state.a_lon)
     pose = centre_in_plane(state, motion, line)
     speed, aside = float(state.v_lon), float(middle[1])
     shorter = 1 - pose.curvature * aside
     swing = 2 * speed * float(state.v_lat) * pose.curvature + speed**2 * pose.curvature_rate * aside
-    return _Moving((pose.x, pose.y), pose.along, speed * shorter, float(state.a_lon) * shorter - swing)
+    return _BoxState((pose.x, pose.y), pose.along, speed * shorter, float(state.a_lon) * shorter - swing)
 
 
 def _state(tag: str, step: int, state: State, motion: Motion, line: ReferenceLine | None) -> Element:
-    moving = _moving(state, motion, line)
+    moving = _box_state(state, motion, line)
     return element(
         tag,
         element("position", _point(*moving.place)),
@@ -248,12 +262,12 @@ def _exact(tag: str, value: Fraction | float) -> Element:
     return element(tag, element("exact", text=decimal(value)))
 
 
-def _problem(subject: Subject, number: int) -> Element:
-    """That of the first vehicle, SV: from where it starts to where and when it ends (2020a requires one)."""
+def _problem(subject: ExportSubject, number: int) -> Element:
+    """Return the planning problem of SV: from its start to where and when it ends (2020a requires one)."""
     name = next(iter(subject.vehicles))
     motion = subject.vehicles[name]
     states = subject.samples[name]
-    start, end = (_moving(x, motion, subject.file.road.line) for x in (states[0], states[-1]))
+    start, end = (_box_state(x, motion, subject.file.road.line) for x in (states[0], states[-1]))
     initial = element(
         "initialState",
         element("position", _point(*start.place)),

@@ -13,13 +13,15 @@ from math import ceil, floor
 import numpy as np
 
 from roadproof.extensions.exchange.export.points import upper_left
-from roadproof.extensions.exchange.export.subject import Subject
-from roadproof.extensions.traffic.formats.highd import LOWER, lanes_of_markings
+from roadproof.extensions.exchange.export.subject import ExportSubject
+from roadproof.extensions.traffic.formats.highd_columns import LOWER, lanes_of_markings
 from roadproof.extensions.traffic.formats.recording import Floats, Recording
-from roadproof.extensions.traffic.formats.straight import of_bands, record
+from roadproof.extensions.traffic.formats.straight import of_bands, place_recording
 from roadproof.extensions.traffic.formats.table import table_bytes
 from roadproof.extensions.traffic.formats.write_highd import highd_tables
-from roadproof.frontends.report.samples import class_of, road_toml
+from roadproof.extensions.traffic.road_file import road_toml
+from roadproof.frontends.report.samples import kind_of
+from roadproof.world.drive import Motion
 from roadproof.world.road import Road
 from roadproof.world.signals import RECORDED
 
@@ -37,7 +39,7 @@ class Shift:
     d: Fraction
 
 
-def files(subject: Subject) -> dict[str, bytes]:
+def files(subject: ExportSubject) -> dict[str, bytes]:
     """XX_recordingMeta.csv, XX_tracksMeta.csv, XX_tracks.csv, XX being the subject's number; XX_road.toml.
 
     Raises ``InputError`` for roads that no road file can say.
@@ -50,14 +52,14 @@ def files(subject: Subject) -> dict[str, bytes]:
     return made
 
 
-def shift_of(subject: Subject) -> Shift:
-    """So that the rear of the last vehicle and the left edge of the road are where highD begins."""
+def shift_of(subject: ExportSubject) -> Shift:
+    """Return the shift that puts the last vehicle's rear and the road's left edge where highD begins."""
     rear = min(x.s - m.length for name, m in subject.vehicles.items() for x in subject.samples[name])
     left = max(x.d[1] for x in subject.file.road.lanelets)
     return Shift(Fraction(10 - floor(rear)), Fraction(-_TOP - ceil(left)))
 
 
-def recording_of(subject: Subject, name: str, shift: Shift) -> Recording:
+def recording_of(subject: ExportSubject, name: str, shift: Shift) -> Recording:
     """The samples of the drive as a recording."""
     edges = sorted({x + shift.d for lanelet in subject.file.road.lanelets for x in lanelet.d}, reverse=True)
     road = of_bands(lanes_of_markings(_UPPER, tuple(round(float(-y), DECIMALS) for y in edges)))
@@ -79,7 +81,7 @@ def recording_of(subject: Subject, name: str, shift: Shift) -> Recording:
         "width": width,
         "first_frame": np.ones(len(motions), np.int64),
     }
-    return record(road, name, subject.rate, vehicles, counts, (s, d, *others))
+    return place_recording(road, name, subject.rate, vehicles, counts, (s, d, *others))
 
 
 def _floats(values: Iterable[Fraction]) -> Floats:
@@ -87,7 +89,12 @@ def _floats(values: Iterable[Fraction]) -> Floats:
 
 
 def _is_plain(road: Road) -> bool:
-    """Whether markings say all of a road: main lanes without end, side by side."""
+    """Return whether markings say all of a road: main lanes without end, side by side."""
     main = all(x.zone == x.attribute == "main" and x.s == (None, None) for x in road.lanelets)
     edges = sorted(x.d for x in road.lanelets)
     return main and all(a[1] == b[0] for a, b in pairwise(edges))
+
+
+def class_of(motion: Motion) -> str:
+    """Return the class of recordings with two classes: ``Car`` or ``Truck``."""
+    return "Truck" if kind_of(motion) in ("truck", "bus") else "Car"

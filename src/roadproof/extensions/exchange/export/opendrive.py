@@ -14,10 +14,18 @@ from itertools import pairwise
 from math import ceil
 
 from roadproof.extensions.exchange.export import plan_view
-from roadproof.extensions.exchange.export.subject import WRITTEN, Layout, Section, Subject, crossed
+from roadproof.extensions.exchange.export.subject import (
+    WRITTEN,
+    ExportSubject,
+    RoadCut,
+    Section,
+    allow_lane_change,
+    monotone_starts,
+)
 from roadproof.extensions.exchange.export.user_map import checked_map, map_path
-from roadproof.frontends.report.xml import Element, decimal, document, element
-from roadproof.world.motion import monotone_starts, state_at
+from roadproof.extensions.maps.xml_writer import Element, document, element
+from roadproof.frontends.report.numbers import decimal
+from roadproof.world.motion import state_at
 from roadproof.world.road import Attribute, Lanelet
 
 _TYPES: Mapping[Attribute, str] = {"main": "driving", "merge": "entry", "departure": "exit"}
@@ -31,19 +39,19 @@ SPEED = 130
 """The speed limit in km/h, which our roads do not have: the recommended speed of German motorways."""
 
 
-def files(subject: Subject) -> dict[str, bytes]:
+def files(subject: ExportSubject) -> dict[str, bytes]:
     """NAME.xodr, or the map of the road. Raises ``InputError`` for roads that have no lanes side by side."""
     path = checked_map(subject, ENDING)
     return {file_name(subject): road_file(subject) if path is None else path.read_bytes()}
 
 
-def file_name(subject: Subject) -> str:
-    """Of the road: NAME.xodr, or that of the map which it is from."""
+def file_name(subject: ExportSubject) -> str:
+    """Return the name of the road's file: NAME.xodr, or the name of the map that it comes from."""
     path = map_path(subject.file.road, ENDING)
     return f"{subject.name}.xodr" if path is None else path.name
 
 
-def road_file(subject: Subject) -> bytes:
+def road_file(subject: ExportSubject) -> bytes:
     """The road of the drive, as far as the drive goes."""
     layout = subject.layout
     left = max(x.d[1] for x in layout.road.lanelets) + (BESIDE if _has_steps(layout) else 0)
@@ -52,7 +60,7 @@ def road_file(subject: Subject) -> bytes:
         "header",
         revMajor="1",
         revMinor="7",
-        name=layout.said,
+        name=layout.cut_note,
         version="1",
         date=f"{WRITTEN}T00:00:00",
         north=decimal(left),
@@ -61,10 +69,10 @@ def road_file(subject: Subject) -> bytes:
         west=decimal(layout.low),
         vendor="roadproof",
     )
-    return document(element("OpenDRIVE", header, _road(layout, left, _limit(subject))))
+    return document(element("OpenDRIVE", header, _road(layout, left, _speed_limit(subject))))
 
 
-def _limit(subject: Subject) -> int:
+def _speed_limit(subject: ExportSubject) -> int:
     """km/h: ``SPEED``, or the next ten above the fastest vehicle where one is faster."""
     horizon = subject.file.horizon
     speeds = [state_at(x, horizon).v_lon for x in subject.vehicles.values()]
@@ -73,7 +81,7 @@ def _limit(subject: Subject) -> int:
     return max(SPEED, 10 * ceil(max(speeds) * Fraction(36, 100)))
 
 
-def _road(layout: Layout, left: Fraction, limit: int) -> Element:
+def _road(layout: RoadCut, left: Fraction, limit: int) -> Element:
     line = layout.road.line
     if line is None:
         plan, offset = plan_view.straight(layout.low, layout.high, left), []
@@ -95,15 +103,15 @@ def _road(layout: Layout, left: Fraction, limit: int) -> Element:
     )
 
 
-def _has_steps(layout: Layout) -> bool:
-    """Whether lanes of a map go on with other edges; other tools want edges without steps."""
+def _has_steps(layout: RoadCut) -> bool:
+    """Return whether lanes of a map go on with other edges; other tools want edges without steps."""
     if layout.road.line is None:
         return False
     lanes = [{x.lane: x.d for x in section.lanelets} for section in layout.sections]
     return any(a[x] != b[x] for a, b in pairwise(lanes) for x in a.keys() & b.keys())
 
 
-def _begins(
+def _initial_widths(
     strips: Sequence[tuple[Lanelet | None, Fraction]], before: Section | None, left: Fraction
 ) -> list[Fraction]:
     """Widths where a section begins: edges are where lanes of the section before have them."""
@@ -120,7 +128,7 @@ def _begins(
     return [a - b for a, b in pairwise(edges)]
 
 
-def _sections(layout: Layout, left: Fraction, limit: int) -> Iterator[Element]:
+def _sections(layout: RoadCut, left: Fraction, limit: int) -> Iterator[Element]:
     strips = [_strips(section, left) for section in layout.sections]
     steps = _has_steps(layout)
     numbers = [{x: -k for k, (x, _) in enumerate(each, 1) if x is not None} for each in strips]
@@ -128,18 +136,18 @@ def _sections(layout: Layout, left: Fraction, limit: int) -> Iterator[Element]:
     around = [{}, *linked, {}]
     for k, section in enumerate(layout.sections):
         lanes = []
-        begins = _begins(strips[k], layout.sections[k - 1] if k and steps else None, left)
+        begins = _initial_widths(strips[k], layout.sections[k - 1] if k and steps else None, left)
         ramp = min(RAMP, (section.high - section.low) / 2)
         for place, (lanelet, width) in enumerate(strips[k]):
             neighbour = strips[k][place + 1][0] if place + 1 < len(strips[k]) else None
-            marked = _mark(lanelet, neighbour, layout)
+            marked = _right_marking(lanelet, neighbour, layout)
             before = None if lanelet is None else around[k].get(lanelet.lane)
             after = None if lanelet is None else around[k + 2].get(lanelet.lane)
             widths = _widths(begins[place], width, ramp)
             lanes.append(_lane(-place - 1, lanelet, widths, marked, (before, after), limit))
         first = strips[k][0][0]
         middle = element(
-            "lane", _line("none" if first is None else "solid"), id="0", type="none", level="false"
+            "lane", _road_mark("none" if first is None else "solid"), id="0", type="none", level="false"
         )
         yield element(
             "laneSection",
@@ -161,16 +169,16 @@ def _strips(section: Section, left: Fraction) -> list[tuple[Lanelet | None, Frac
     return strips
 
 
-def _mark(lanelet: Lanelet | None, right: Lanelet | None, layout: Layout) -> str:
+def _right_marking(lanelet: Lanelet | None, right: Lanelet | None, layout: RoadCut) -> str:
     """The marking on the right of a strip."""
     if lanelet is None and right is None:
         return "none"
     if lanelet is None or right is None:
         return "solid"
-    return "broken" if crossed(lanelet, right, layout.road) else "solid"
+    return "broken" if allow_lane_change(lanelet, right, layout.road) else "solid"
 
 
-def _line(kind: str) -> Element:
+def _road_mark(kind: str) -> Element:
     if kind == "none":
         return element("roadMark", sOffset="0", type="none", color="standard", laneChange="none")
     change = "both" if kind == "broken" else "none"
@@ -191,7 +199,7 @@ def _lane(
     number: int,
     lanelet: Lanelet | None,
     widths: list[Element],
-    marked: str,
+    marking: str,
     links: tuple[int | None, int | None],
     limit: int,
 ) -> Element:
@@ -201,10 +209,10 @@ def _lane(
     if linked:
         parts.append(element("link", *linked))
     parts += widths
-    parts.append(_line(marked))
+    parts.append(_road_mark(marking))
     if lanelet is not None:
         parts.append(element("speed", sOffset="0", max=str(limit), unit="km/h"))
-        said = {"lane": lanelet.lane, "zone": lanelet.zone}
-        parts += [element("userData", code=f"roadproof:{code}", value=x) for code, x in said.items()]
+        user_data = {"lane": lanelet.lane, "zone": lanelet.zone}
+        parts += [element("userData", code=f"roadproof:{code}", value=x) for code, x in user_data.items()]
     kind = _GAP if lanelet is None else _TYPES[lanelet.attribute]
     return element("lane", *parts, id=str(number), type=kind, level="false")

@@ -26,13 +26,14 @@ from fractions import Fraction
 from roadproof.errors import InputError
 from roadproof.extensions.exchange.export import opendrive
 from roadproof.extensions.exchange.export.points import OVERHANG, axle_to_centre, heading, rear_axle_in_plane
-from roadproof.extensions.exchange.export.subject import WRITTEN, Subject
+from roadproof.extensions.exchange.export.subject import WRITTEN, ExportSubject, monotone_starts
 from roadproof.extensions.exchange.export.user_map import map_path
 from roadproof.extensions.maps.selection import STRETCH
+from roadproof.extensions.maps.xml_writer import Element, document, element
+from roadproof.frontends.report.numbers import decimal
 from roadproof.frontends.report.samples import kind_of
-from roadproof.frontends.report.xml import Element, decimal, document, element
 from roadproof.world.drive import Motion
-from roadproof.world.motion import State, advance, monotone_starts
+from roadproof.world.motion import State, advance
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Road
 from roadproof.world.signals import Kind
@@ -47,10 +48,10 @@ BETWEEN = 1.2
 
 
 @dataclass(frozen=True)
-class Polyline:
+class TimedPolyline:
     """States and headings (rad) at the vertices, and how far (m) lines between them are from the drive.
 
-    ``turned``: no heading of the drive is greater, to either side. ``pulls``: accelerations along (m/s²)
+    ``turned``: no heading of the drive is greater, to either side. ``accelerations``: along the road (m/s²)
     among which are the least and the greatest.
     """
 
@@ -58,12 +59,12 @@ class Polyline:
     headings: tuple[float, ...]
     bound: float
     turned: float
-    pulls: tuple[Fraction, ...]
+    accelerations: tuple[Fraction, ...]
 
 
 def polyline_of(
     motion: Motion, horizon: Fraction, within: float = WITHIN, line: ReferenceLine | None = None
-) -> Polyline:
+) -> TimedPolyline:
     """Vertices from time 0 to ``horizon``, at every change of acceleration and as many between as needed.
 
     There is one where the speed along is least or greatest, so that it is nowhere below 0 if it is so at none
@@ -75,12 +76,12 @@ def polyline_of(
     parts = [
         part
         for start, end in zip(starts, ends, strict=True)
-        for part in _halved(start, end - start.time, motion, within, line)
+        for part in _segments(start, end - start.time, motion, within, line)
     ]
     vertices = (*(x.begin for x in parts), parts[-1].end)
     headings = _headings(vertices)
     swings = [x.swing for x in parts]
-    return Polyline(
+    return TimedPolyline(
         vertices,
         tuple(headings),
         max(x.bound for x in parts),
@@ -90,24 +91,24 @@ def polyline_of(
 
 
 def _headings(vertices: Sequence[State]) -> list[float]:
-    """At rest the heading is the one before, or after where there is none. Raises ``InputError``."""
+    """Return headings; at rest the one before, or after where there is none before. Raises ``InputError``."""
     for state in vertices:
         if state.v_lon < 0 or (state.v_lon == 0 and state.v_lat != 0):
             raise InputError(
                 f"at {float(state.time):g} s a vehicle has v_lon={float(state.v_lon):g} m/s: other tools "
                 "want vehicles that drive forwards; end the drive before"
             )
-    found = [heading(x) for x in vertices]
-    first = next((x for x in found if x is not None), 0.0)
-    made: list[float] = []
-    for state, turned, following in zip(vertices, found, [*found[1:], None], strict=True):
-        made.append(turned if turned is not None else made[-1] if made else first)
-        if turned is None and following is not None and abs(following - made[-1]) > _SAME:
-            raise _turns(state)
-    return made
+    directions = [heading(x) for x in vertices]
+    first = next((x for x in directions if x is not None), 0.0)
+    headings: list[float] = []
+    for state, turned, following in zip(vertices, directions, [*directions[1:], None], strict=True):
+        headings.append(turned if turned is not None else headings[-1] if headings else first)
+        if turned is None and following is not None and abs(following - headings[-1]) > _SAME:
+            raise _turn_error(state)
+    return headings
 
 
-def _turns(state: State) -> InputError:
+def _turn_error(state: State) -> InputError:
     return InputError(
         f"a vehicle turns where it all but stands, at {float(state.time):g} s: it has no heading there; "
         "end the drive before"
@@ -115,9 +116,10 @@ def _turns(state: State) -> InputError:
 
 
 @dataclass(frozen=True)
-class _Part:
-    """From one vertex to the next; ``bound``: the one above (m); ``swing``: how much greater than at both a
-    heading (rad) may be between them."""
+class _PolylineSegment:
+    """A segment between two vertices. ``bound``: the largest error (m); ``swing``: how much greater than at
+    both a heading (rad) may be between them.
+    """
 
     begin: State
     duration: Fraction
@@ -129,24 +131,24 @@ class _Part:
         return advance(self.begin, self.duration)
 
 
-def _halved(
+def _segments(
     state: State, duration: Fraction, motion: Motion, within: float, line: ReferenceLine | None
-) -> Iterator[_Part]:
+) -> Iterator[_PolylineSegment]:
     """Parts of a stretch in which the speed along grows or falls, halved until the bound is small enough."""
-    part = _part(state, duration, motion.length)
+    part = _segment(state, duration, motion.length)
     if line is not None and part.bound <= within:
-        part = replace(part, bound=max(part.bound, BETWEEN * _apart(part, motion, line)))
+        part = replace(part, bound=max(part.bound, BETWEEN * _largest_gap(part, motion, line)))
     if part.bound <= within:
         yield part
         return
     if duration <= _SHORTEST:
-        raise _turns(state)
-    yield from _halved(state, duration / 2, motion, within, line)
-    yield from _halved(advance(state, duration / 2), duration / 2, motion, within, line)
+        raise _turn_error(state)
+    yield from _segments(state, duration / 2, motion, within, line)
+    yield from _segments(advance(state, duration / 2), duration / 2, motion, within, line)
 
 
-def _apart(part: _Part, motion: Motion, line: ReferenceLine) -> float:
-    """How far (m) the rear axle and the centre are from straight lines, at seven instants of a part."""
+def _largest_gap(part: _PolylineSegment, motion: Motion, line: ReferenceLine) -> float:
+    """Return the largest distance (m) of rear axle and centre from straight lines, at seven instants."""
     ends = part.begin, part.end
     first, last = (rear_axle_in_plane(x, motion, heading(x) or 0.0, line) for x in ends)
     turn = math.remainder(last[2] - first[2], math.tau)
@@ -162,7 +164,7 @@ def _apart(part: _Part, motion: Motion, line: ReferenceLine) -> float:
     return furthest
 
 
-def _part(state: State, duration: Fraction, length: Fraction) -> _Part:
+def _segment(state: State, duration: Fraction, length: Fraction) -> _PolylineSegment:
     """The part of ``duration`` seconds from ``state`` on; its bound is infinite where there is no heading."""
     end = advance(state, duration)
     pull = max(math.hypot(x.a_lon, x.a_lat) for x in (state, end))
@@ -172,12 +174,12 @@ def _part(state: State, duration: Fraction, length: Fraction) -> _Part:
     if turning or swerving:
         slowest = _slowest(state, end)
         if slowest <= 0:
-            return _Part(state, duration, math.inf, math.inf)
+            return _PolylineSegment(state, duration, math.inf, math.inf)
         rate = turning / slowest**2
         bend = 2 * turning * pull / slowest**3 + swerving / slowest**2
     eighth = float(duration) ** 2 / 8
     bound = eighth * (pull + float(axle_to_centre(length)) * (2 * bend + rate**2))
-    return _Part(state, duration, bound, eighth * bend if swerving else 0.0)
+    return _PolylineSegment(state, duration, bound, eighth * bend if swerving else 0.0)
 
 
 def _slowest(state: State, end: State) -> float:
@@ -199,12 +201,12 @@ WHEEL = Fraction(3, 5)
 _CATEGORIES: Mapping[Kind, str] = {"motorcycle": "motorbike", "other": "van"}
 
 
-def files(subject: Subject) -> dict[str, bytes]:
+def files(subject: ExportSubject) -> dict[str, bytes]:
     """NAME.xosc, and NAME.xodr, which it names. Raises ``InputError``."""
     return {f"{subject.name}.xosc": scenario_file(subject), **opendrive.files(subject)}
 
 
-def scenario_file(subject: Subject) -> bytes:
+def scenario_file(subject: ExportSubject) -> bytes:
     """The drive; its heading says how far from it straight lines between vertices are."""
     horizon, road = subject.file.horizon, subject.file.road
     lines = {
@@ -215,7 +217,7 @@ def scenario_file(subject: Subject) -> bytes:
         revMajor="1",
         revMinor="2",
         date=f"{WRITTEN}T00:00:00",
-        description=_said(subject, lines),
+        description=_file_description(subject, lines),
         author="roadproof",
     )
     network = element("RoadNetwork", element("LogicFile", filepath=opendrive.file_name(subject)))
@@ -229,7 +231,7 @@ def scenario_file(subject: Subject) -> bytes:
         "Storyboard",
         element("Init", element("Actions", *actions)),
         story,
-        element("StopTrigger", _at(horizon, "end")),
+        element("StopTrigger", _time_condition(horizon, "end")),
     )
     declared = element("ParameterDeclarations", *_stretch(road))
     root = element("OpenSCENARIO", header, declared, element("CatalogLocations"))
@@ -244,22 +246,22 @@ def _stretch(road: Road) -> Iterator[Element]:
         yield element("ParameterDeclaration", name=STRETCH, parameterType="string", value=chosen)
 
 
-def _said(subject: Subject, lines: dict[str, Polyline]) -> str:
+def _file_description(subject: ExportSubject, lines: dict[str, TimedPolyline]) -> str:
     bound = math.ceil(max(x.bound + ROUNDING for x in lines.values()) * 10_000) / 10_000
-    turned = max(_corner(subject.vehicles[name], line) for name, line in lines.items())
+    turned = max(_corner_offset(subject.vehicles[name], line) for name, line in lines.items())
     return (
-        f"{subject.said}; straight lines between vertices are within {bound:.4f} m of the drive; boxes are "
-        f"turned as they move, their corners up to {turned:.3f} m from those of the boxes that were judged, "
-        "which are aligned with the road"
+        f"{subject.formula_note}; straight lines between vertices are within {bound:.4f} m of the drive; "
+        f"boxes are turned as they move, their corners up to {turned:.3f} m from those of the boxes "
+        "that were judged, which are aligned with the road"
     )
 
 
-def _corner(motion: Motion, line: Polyline) -> float:
-    """How far a corner of the turned box is from that of the aligned one at most."""
+def _corner_offset(motion: Motion, line: TimedPolyline) -> float:
+    """Return how far a corner of the turned box is from that of the aligned one at most."""
     return 2 * math.sin(line.turned / 2) * math.hypot(motion.length, motion.width) / 2
 
 
-def _vehicle(motion: Motion, line: Polyline) -> Element:
+def _vehicle(motion: Motion, line: TimedPolyline) -> Element:
     box = element(
         "BoundingBox",
         element("Center", x=decimal(axle_to_centre(motion.length)), y="0", z=decimal(HEIGHT / 2)),
@@ -267,18 +269,20 @@ def _vehicle(motion: Motion, line: Polyline) -> Element:
             "Dimensions", width=decimal(motion.width), length=decimal(motion.length), height=decimal(HEIGHT)
         ),
     )
-    pulls = [float(x) for x in line.pulls]
-    can = element(
+    accelerations = [float(x) for x in line.accelerations]
+    performance = element(
         "Performance",
         maxSpeed=decimal(max(x.v_lon for x in line.vertices) + 10),
-        maxAcceleration=decimal(max(10.0, *pulls)),
-        maxDeceleration=decimal(max(10.0, *(-x for x in pulls))),
+        maxAcceleration=decimal(max(10.0, *accelerations)),
+        maxDeceleration=decimal(max(10.0, *(-x for x in accelerations))),
     )
-    apart = motion.length * (1 - 2 * OVERHANG)
-    axles = element("Axles", _axle("FrontAxle", motion, apart), _axle("RearAxle", motion, Fraction(0)))
+    wheelbase = motion.length * (1 - 2 * OVERHANG)
+    axles = element("Axles", _axle("FrontAxle", motion, wheelbase), _axle("RearAxle", motion, Fraction(0)))
     kind = kind_of(motion)
     category = _CATEGORIES.get(kind, kind)
-    return element("Vehicle", box, can, axles, element("Properties"), name="box", vehicleCategory=category)
+    return element(
+        "Vehicle", box, performance, axles, element("Properties"), name="box", vehicleCategory=category
+    )
 
 
 def _axle(tag: str, motion: Motion, place: Fraction) -> Element:
@@ -292,7 +296,7 @@ def _axle(tag: str, motion: Motion, place: Fraction) -> Element:
     )
 
 
-def _init(name: str, motion: Motion, line: Polyline, road: ReferenceLine | None) -> Element:
+def _init(name: str, motion: Motion, line: TimedPolyline, road: ReferenceLine | None) -> Element:
     first = line.vertices[0]
     begin = _position(first, line.headings[0], motion, road)
     place = element("PrivateAction", element("TeleportAction", begin))
@@ -308,24 +312,24 @@ def _position(state: State, turned: float, motion: Motion, road: ReferenceLine |
     return element("Position", element("WorldPosition", x=decimal(x), y=decimal(y), h=decimal(heading)))
 
 
-def _act(subject: Subject, lines: dict[str, Polyline]) -> Element:
+def _act(subject: ExportSubject, lines: dict[str, TimedPolyline]) -> Element:
     road = subject.file.road.line
     groups = [_group(name, motion, lines[name], road) for name, motion in subject.vehicles.items()]
-    start = element("StartTrigger", _at(Fraction(0), "begin"))
+    start = element("StartTrigger", _time_condition(Fraction(0), "begin"))
     return element("Act", *groups, start, name="all")
 
 
-def _group(name: str, motion: Motion, line: Polyline, road: ReferenceLine | None) -> Element:
+def _group(name: str, motion: Motion, line: TimedPolyline, road: ReferenceLine | None) -> Element:
     actors = element("Actors", element("EntityRef", entityRef=name), selectTriggeringEntities="false")
     follow = _follow(name, motion, line, road)
     action = element("Action", element("PrivateAction", follow), name=f"{name} follows")
-    start = element("StartTrigger", _at(Fraction(0), f"{name} begins"))
+    start = element("StartTrigger", _time_condition(Fraction(0), f"{name} begins"))
     event = element("Event", action, start, name=f"{name} drives", priority="override")
     manoeuvre = element("Maneuver", event, name=f"{name} moves")
     return element("ManeuverGroup", actors, manoeuvre, name=f"{name} acts", maximumExecutionCount="1")
 
 
-def _follow(name: str, motion: Motion, line: Polyline, road: ReferenceLine | None) -> Element:
+def _follow(name: str, motion: Motion, line: TimedPolyline, road: ReferenceLine | None) -> Element:
     vertices = [
         element("Vertex", _position(state, turned, motion, road), time=decimal(state.time))
         for state, turned in zip(line.vertices, line.headings, strict=True)
@@ -339,7 +343,7 @@ def _follow(name: str, motion: Motion, line: Polyline, road: ReferenceLine | Non
     return element("RoutingAction", follow)
 
 
-def _at(time: Fraction, name: str) -> Element:
+def _time_condition(time: Fraction, name: str) -> Element:
     """A condition that is met from ``time`` on."""
     clock = element("SimulationTimeCondition", value=decimal(time), rule="greaterOrEqual")
     condition = element("Condition", element("ByValueCondition", clock), name=name, delay="0")

@@ -1,11 +1,12 @@
-"""Where a road in OpenDRIVE goes in the plane: a line, or cubics through the points of a reference line."""
+"""The reference line of a road in OpenDRIVE: a line, or cubics through given points."""
 
 import math
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
 
-from roadproof.frontends.report.xml import Element, decimal, element
+from roadproof.extensions.maps.xml_writer import Element, element
+from roadproof.frontends.report.numbers import decimal
 from roadproof.world.reference_line import ReferenceLine
 
 _SPACING = 5
@@ -26,7 +27,7 @@ def along(line: ReferenceLine, low: Fraction, high: Fraction) -> Element:
 
 def _cubics(line: ReferenceLine, low: Fraction, high: Fraction) -> Iterator[Element]:
     inner = {x.begin for x in line.bends() if low < x.begin < high}
-    for begin, end in pairwise(_even([low, *sorted(inner), high])):
+    for begin, end in pairwise(_evenly_spaced([low, *sorted(inner), high])):
         one, other = line.pose(float(begin)), line.pose(float(end))
         cos, sin = math.cos(one.heading), math.sin(one.heading)
         x, y = other.x - one.x, other.y - one.y
@@ -43,7 +44,7 @@ def _cubics(line: ReferenceLine, low: Fraction, high: Fraction) -> Iterator[Elem
         yield element("geometry", cubic, **{name: decimal(value) for name, value in place.items()})
 
 
-def _even(places: list[Fraction]) -> Iterator[Fraction]:
+def _evenly_spaced(places: list[Fraction]) -> Iterator[Fraction]:
     """Places, and as many between them as needed."""
     for low, high in pairwise(places):
         count = max(math.ceil((high - low) / _SPACING), 1)

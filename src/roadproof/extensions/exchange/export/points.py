@@ -1,4 +1,4 @@
-"""Where formats have the reference point of a vehicle; ours is the front-left corner of the box.
+"""The reference points of vehicles by format; ours is the front-left corner of the box.
 
 On a straight road the plane has x = s along the road and y = d to the left. Where a road has a reference
 line, a place (s, d) is d to the left of the line at s, and headings are from its direction there. Our boxes
@@ -73,7 +73,7 @@ def rear_axle_in_plane(
 
 
 def axle_to_centre(length: Fraction) -> Fraction:
-    """How far (m) the centre of the box is ahead of the rear axle."""
+    """Return how far (m) the centre of the box is ahead of the rear axle."""
     return length / 2 - OVERHANG * length
 
 

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 
 from roadproof.extensions.exchange.export import commonroad, csv_files, highd, opendrive, openscenario
-from roadproof.extensions.exchange.export.subject import Subject
+from roadproof.extensions.exchange.export.subject import ExportSubject
 
-FORMATS: Mapping[str, Callable[[Subject], dict[str, bytes]]] = {
+FORMATS: Mapping[str, Callable[[ExportSubject], dict[str, bytes]]] = {
     "openscenario": openscenario.files,
     "opendrive": opendrive.files,
     "commonroad": commonroad.files,
@@ -15,6 +15,6 @@ FORMATS: Mapping[str, Callable[[Subject], dict[str, bytes]]] = {
 """By name, what makes the files of a drive: their contents by name. Each raises ``InputError``."""
 
 
-def numbers_in(name: str, subject: Subject) -> dict[str, int]:
-    """What vehicles are called in a format, where names are numbers."""
-    return commonroad.numbers(subject) if name == "commonroad" else subject.ids
+def vehicle_ids_in(name: str, subject: ExportSubject) -> dict[str, int]:
+    """Return the ids of vehicles by name, for a format whose names are numbers."""
+    return commonroad.vehicle_ids(subject) if name == "commonroad" else subject.ids

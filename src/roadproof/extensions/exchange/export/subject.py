@@ -1,4 +1,4 @@
-"""What is exported: a drive, its name, how densely it is sampled, and its road cut to a finite length.
+"""A drive to be exported, with its name, sampling rate and a road cut to a finite length.
 
 A section of a road reaches from one end or beginning of a lanelet to the next; in it every lanelet is there
 from its beginning to its end.
@@ -13,10 +13,10 @@ from math import ceil, floor
 
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.extensions.traffic.evaluate.robust import MOST_SAMPLES
 from roadproof.library.roles import vehicle_order
-from roadproof.semantics.exact.robust import MOST_SAMPLES
 from roadproof.world.drive import Motion
-from roadproof.world.motion import State, advance, monotone_starts, states_at
+from roadproof.world.motion import State, advance, piece_starts, states_at
 from roadproof.world.road import Lanelet, Road
 
 MARGIN = 100
@@ -35,7 +35,7 @@ class Section:
 
 
 @dataclass(frozen=True)
-class Layout:
+class RoadCut:
     """A road cut to ``low`` ≤ s ≤ ``high`` (m), in sections that follow each other."""
 
     road: Road
@@ -44,14 +44,14 @@ class Layout:
     sections: tuple[Section, ...]
 
     @property
-    def said(self) -> str:
-        """What was cut, for the heading of a file."""
+    def cut_note(self) -> str:
+        """The note on the cut of the road, for the heading of a file."""
         endless = any(None in x.s for x in self.road.lanelets)
         cut = f"cut to s = {self.low} m to {self.high} m" if endless else "not cut"
         return f"road {self.road.name}, {cut}"
 
 
-def lay_out(road: Road, span: tuple[Fraction, Fraction]) -> Layout:
+def lay_out(road: Road, span: tuple[Fraction, Fraction]) -> RoadCut:
     """``road`` as far as ``span`` (least rear, greatest front; m) and its lanelets go, and ``MARGIN`` more.
 
     Raises ``InputError`` where lanelets overlap, since lanes of other formats lie side by side, and where
@@ -69,7 +69,7 @@ def lay_out(road: Road, span: tuple[Fraction, Fraction]) -> Layout:
             x for x, begin, stop in zip(road.lanelets, begins, stops, strict=True) if begin <= a and b <= stop
         ]
         sections.append(Section(a, b, _side_by_side(road, a, b, there)))
-    return Layout(road, places[0], places[-1], tuple(sections))
+    return RoadCut(road, places[0], places[-1], tuple(sections))
 
 
 def _side_by_side(road: Road, low: Fraction, high: Fraction, lanelets: list[Lanelet]) -> tuple[Lanelet, ...]:
@@ -104,12 +104,12 @@ def _extremes(motion: Motion, horizon: Fraction) -> list[State]:
     times = {Fraction(0), horizon, *(x.time for x in starts)}
     ends = [x.time for x in starts[1:]] + [horizon]
     for state, end in zip(starts, ends, strict=True):
-        times.add(_still(state, end))
+        times.add(_standstill_time(state, end))
     return list(states_at(motion, sorted(times)))
 
 
-def _still(state: State, end: Fraction) -> Fraction:
-    """When a speed that grows or falls from ``state`` on is 0, or one of both ends where it is so nowhere."""
+def _standstill_time(state: State, end: Fraction) -> Fraction:
+    """Return when the speed from ``state`` on is 0; if never, the nearer end."""
     begin = state.time
     if state.j_lon == 0:
         still = begin - state.v_lon / state.a_lon if state.a_lon else end
@@ -125,15 +125,15 @@ def _still(state: State, end: Fraction) -> Fraction:
     return begin
 
 
-def together(one: Lanelet, other: Lanelet, road: Road) -> bool:
-    """Whether two lanelets of a section share a boundary, and their lanes are adjacent."""
+def are_adjacent(one: Lanelet, other: Lanelet, road: Road) -> bool:
+    """Return whether two lanelets of a section share a boundary, and their lanes are adjacent."""
     touching = one.d[0] == other.d[1] or one.d[1] == other.d[0]
     return touching and frozenset((one.lane, other.lane)) in road.adjacent
 
 
-def crossed(one: Lanelet, other: Lanelet, road: Road) -> bool:
-    """Whether vehicles may change between two lanelets: beyond the zone of a ramp they no longer do."""
-    return one.zone == other.zone and together(one, other, road)
+def allow_lane_change(one: Lanelet, other: Lanelet, road: Road) -> bool:
+    """Return whether vehicles may change between two lanelets; beyond the zone of a ramp they may not."""
+    return one.zone == other.zone and are_adjacent(one, other, road)
 
 
 WRITTEN = "1970-01-01"
@@ -142,7 +142,7 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 @dataclass(frozen=True)
-class Subject:
+class ExportSubject:
     """The drive of ``file``; ``name`` is that of its files, ``number`` its place among the exported.
 
     ``rate``: samples a second.
@@ -160,11 +160,11 @@ class Subject:
 
     @cached_property
     def ids(self) -> dict[str, int]:
-        """What vehicles are called where names are numbers."""
+        """The ids of vehicles where names are numbers."""
         return {name: number for number, name in enumerate(self.vehicles, 1)}
 
     @cached_property
-    def layout(self) -> Layout:
+    def layout(self) -> RoadCut:
         """The road, cut to where the drive goes. Raises ``InputError``."""
         return lay_out(self.file.road, span_of([*self.vehicles.values()], self.file.horizon))
 
@@ -179,13 +179,13 @@ class Subject:
         return {name: [*states_at(motion, self.times)] for name, motion in self.vehicles.items()}
 
     @property
-    def said(self) -> str:
-        """What it is a drive of, for the heading of a file."""
+    def formula_note(self) -> str:
+        """The formula of the drive, for the heading of a file."""
         what = self.file.formula if self.file.scenario is None else f"scenario {self.file.scenario}"
-        return f"{what} ({self.file.set_name}), {self.file.horizon} s, {self.layout.said}"
+        return f"{what} ({self.file.set_name}), {self.file.horizon} s, {self.layout.cut_note}"
 
 
-def subject_of(name: str, number: int, file: DriveFile, rate: int) -> Subject:
+def subject_of(name: str, number: int, file: DriveFile, rate: int) -> ExportSubject:
     """A subject that every format can have.
 
     Raises ``InputError`` where there is no vehicle, or one whose name is no plain word, ``UsageError`` for a
@@ -206,4 +206,20 @@ def subject_of(name: str, number: int, file: DriveFile, rate: int) -> Subject:
         raise UsageError(
             f"rate={rate}: {name} lasts {file.horizon} s, which makes more than {MOST_SAMPLES:,} samples"
         )
-    return Subject(name, number, file, rate)
+    return ExportSubject(name, number, file, rate)
+
+
+def monotone_starts(motion: Motion) -> tuple[State, ...]:
+    """Return the starts of all intervals on which the speed along the road is monotone.
+
+    They are the starts of pieces, and the zeros of the acceleration along the road inside pieces. At the
+    start of a piece the state has the acceleration of that piece.
+    """
+    states: list[State] = []
+    for state, piece in zip(piece_starts(motion), motion.pieces, strict=True):
+        states.append(state)
+        if piece.duration is not None and state.j_lon != 0:
+            turn = -state.a_lon / state.j_lon
+            if 0 < turn < piece.duration:
+                states.append(advance(state, turn))
+    return tuple(states)

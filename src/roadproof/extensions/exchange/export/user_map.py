@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.extensions.exchange.export.subject import Subject
+from roadproof.extensions.exchange.export.subject import ExportSubject
 from roadproof.world.models import load_road
 from roadproof.world.road import Road
 
@@ -14,8 +14,8 @@ def map_path(road: Road, ending: str) -> Path | None:
     return path if path.suffix == ending else None
 
 
-def checked_map(subject: Subject, ending: str) -> Path | None:
-    """The same for a drive.
+def checked_map(subject: ExportSubject, ending: str) -> Path | None:
+    """Return the map of a drive.
 
     Raises ``InputError`` where the map cannot be read, or does not have the road of the drive.
     """

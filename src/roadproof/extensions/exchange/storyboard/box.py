@@ -6,7 +6,7 @@ from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)
-class Box:
+class ObjectBox:
     """An object's class, what the file calls it, and its box.
 
     ``limits``: of its speed (m/s), acceleration and deceleration (m/s²), by its Performance.

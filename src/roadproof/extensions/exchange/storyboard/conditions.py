@@ -8,22 +8,22 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import field
 
-from roadproof.extensions.exchange.storyboard.box import Box
+from roadproof.extensions.exchange.storyboard.box import ObjectBox
 from roadproof.extensions.exchange.storyboard.control import REMEDY
 from roadproof.extensions.exchange.storyboard.distances import distance_between, gaps_on_road, measure_of
 from roadproof.extensions.exchange.storyboard.document import Document
-from roadproof.extensions.exchange.storyboard.positions import Positions, State, States
+from roadproof.extensions.exchange.storyboard.positions import ObjectState, Positions, States
 from roadproof.extensions.exchange.storyboard.rules import RULES, texts_compare
+from roadproof.extensions.maps.xml_reader import Element
 from roadproof.runtime.records import dataclass
-from roadproof.runtime.xml_reader import Element
 
 TICKS = 100
 """A second is divided into so many steps, at which conditions are evaluated."""
 _TYPES = {"Pedestrian": "pedestrian", "MiscObject": "miscellaneous"}
 _ENTITY_RULES: Mapping[str, Callable[[int, int], bool]] = {
-    "any": lambda found, names: found > 0,
-    "all": lambda found, names: found == names,
-    "none": lambda found, names: found == 0,
+    "any": lambda meeting, names: meeting > 0,
+    "all": lambda meeting, names: meeting == names,
+    "none": lambda meeting, names: meeting == 0,
 }
 _LOOK_AT_ALL = ("RelativeClearanceCondition", "CollisionCondition")
 _EDGES = ("none", "rising", "falling", "risingOrFalling")
@@ -35,7 +35,7 @@ _SLOWEST = 1e-3
 
 @dataclass(frozen=True)
 class Situation:
-    """What conditions can see: the tick, vehicles and how far they went, and states of storyboard elements.
+    """The inputs of conditions: the tick, vehicles and how far they went, and states of storyboard elements.
 
     ``still``: since when each vehicle stands, in ticks. ``elements``: their states and
     transitions by type and name. ``values``: of parameters and variables, which actions may change.
@@ -56,7 +56,7 @@ class ConditionReader:
     """Evaluates conditions of a document."""
 
     document: Document
-    boxes: Mapping[str, Box]
+    boxes: Mapping[str, ObjectBox]
     positions: Positions
     off_road: dict[tuple[Element, str], int] = field(default_factory=dict)
     """Since which tick an object is beside the road, as seen by a condition."""
@@ -77,54 +77,54 @@ class ConditionReader:
         triggering = self.document.child(kind, "TriggeringEntities")
         rule = self.document.text(triggering, "triggeringEntitiesRule")
         if rule not in _ENTITY_RULES:
-            told = f"triggeringEntitiesRule={rule}: one of {', '.join(_ENTITY_RULES)} is needed"
-            raise self.document.error(triggering, told)
+            problem = f"triggeringEntitiesRule={rule}: one of {', '.join(_ENTITY_RULES)} is needed"
+            raise self.document.error(triggering, problem)
         names = [self.document.text(x, "entityRef") for x in triggering.findall("EntityRef")]
         node = self.document.only(self.document.child(kind, "EntityCondition"))
         others = [x.get("entityRef", "") for x in node.iter() if x.peek("entityRef")]
         for name in (*names, *others):
             if name not in self.boxes:
                 raise self.document.error(triggering, f"there is no ScenarioObject {name}")
-        looks = [*now.controlled] if node.tag in _LOOK_AT_ALL else [*names, *others]
-        for name in looks:
+        observed = [*now.controlled] if node.tag in _LOOK_AT_ALL else [*names, *others]
+        for name in observed:
             if name in now.controlled:
                 raise self.document.error(node, f"it looks at {name}, {now.controlled[name]}; {REMEDY}")
         there = all(x in now.states for x in others)
-        found = frozenset(x for x in names if there and x in now.states and self._by_entity(node, x, now))
-        return found if _ENTITY_RULES[rule](len(found), len(names)) else None
+        entities = frozenset(x for x in names if there and x in now.states and self._by_entity(node, x, now))
+        return entities if _ENTITY_RULES[rule](len(entities), len(names)) else None
 
     def _by_value(self, node: Element, now: Situation) -> bool:
-        read = self.document
+        document = self.document
         if node.tag == "SimulationTimeCondition":
             return self._compare(node, now.tick / TICKS)
         if node.tag in ("ParameterCondition", "VariableCondition"):
             return self._compare_value(node, now)
         if node.tag != "StoryboardElementStateCondition":
-            raise read.error(node, "this condition is not supported")
-        kind, name = (read.text(node, f"storyboardElement{x}") for x in ("Type", "Ref"))
+            raise document.error(node, "this condition is not supported")
+        kind, name = (document.text(node, f"storyboardElement{x}") for x in ("Type", "Ref"))
         name = name.replace("::", "/").rsplit("/", 1)[-1]
         if (kind, name) not in now.elements:
-            raise read.error(node, f"there is no {kind} {name}")
-        return read.text(node, "state") in now.elements[kind, name]
+            raise document.error(node, f"there is no {kind} {name}")
+        return document.text(node, "state") in now.elements[kind, name]
 
     def _compare_value(self, node: Element, now: Situation) -> bool:
         """A parameter or variable, as a number where both it and the value of the condition are."""
-        read = self.document
-        name = read.text(node, node.tag.removesuffix("Condition").lower() + "Ref").lstrip("$")
+        document = self.document
+        name = document.text(node, node.tag.removesuffix("Condition").lower() + "Ref").lstrip("$")
         if name not in now.values:
-            raise read.error(node, f"there is no parameter or variable {name}")
+            raise document.error(node, f"there is no parameter or variable {name}")
         try:
-            return texts_compare(read.text(node, "rule"), now.values[name], read.text(node, "value"))
+            return texts_compare(document.text(node, "rule"), now.values[name], document.text(node, "value"))
         except ValueError as error:
-            raise read.error(node, str(error)) from None
+            raise document.error(node, str(error)) from None
 
     def _by_entity(self, node: Element, name: str, now: Situation) -> bool:
-        read, state = self.document, now.states[name]
+        document, state = self.document, now.states[name]
         match node.tag:
             case "EndOfRoadCondition":  # a recording ends before
                 return False
             case "TraveledDistanceCondition":
-                return now.travelled[name] >= read.number(node, "value")
+                return now.travelled[name] >= document.number(node, "value")
             case "SpeedCondition":
                 return self._compare(node, self._on_axis(node, _speeds(state)))
             case "AccelerationCondition":
@@ -138,44 +138,48 @@ class ConditionReader:
                 return self._is_off_road(node, name, now)
             case "StandStillCondition":
                 stands = now.still.get(name)
-                return stands is not None and now.tick - stands >= read.number(node, "duration") * TICKS
+                return stands is not None and now.tick - stands >= document.number(node, "duration") * TICKS
             case "ReachPositionCondition":
-                s, d = self.positions.find(read.child(node, "Position"), now.states)
-                return math.hypot(state.s - s, state.d - d) <= read.number(node, "tolerance")
+                s, d = self.positions.find(document.child(node, "Position"), now.states)
+                return math.hypot(state.s - s, state.d - d) <= document.number(node, "tolerance")
             case "DistanceCondition":
-                s, d = self.positions.find(read.child(node, "Position"), now.states)
-                return self._compare(node, self._distance(node, name, State(s, d, 0, 0, 0, 0), None, now))
+                s, d = self.positions.find(document.child(node, "Position"), now.states)
+                return self._compare(
+                    node, self._distance(node, name, ObjectState(s, d, 0, 0, 0, 0), None, now)
+                )
             case "RelativeDistanceCondition":
                 other, there = self._other(node, now)
                 return self._compare(node, self._distance(node, name, there, other, now))
             case "TimeHeadwayCondition":
                 return self._time_headway(node, name, now)
             case "CollisionCondition":
-                return any(self._touch(name, x, now) for x in self._hit(node, name, now))
+                return any(self._touch(name, x, now) for x in self._collision_partners(node, name, now))
             case "TimeToCollisionCondition":
                 return self._time_to_collision(node, name, now)
-        raise read.error(node, "this condition is not supported")
+        raise document.error(node, "this condition is not supported")
 
-    def _hit(self, node: Element, name: str, now: Situation) -> list[str]:
+    def _collision_partners(self, node: Element, name: str, now: Situation) -> list[str]:
         """The objects that a CollisionCondition is about: the one that it names, or all of a type."""
         kind = node.find("ByType")
         if kind is None:
             return [self._other(self.document.child(node, "EntityRef"), now)[0]]
-        wanted = self.document.text(kind, "type")
-        return [x for x in now.states if x != name and _TYPES.get(self.boxes[x].kind, "vehicle") == wanted]
+        target_type = self.document.text(kind, "type")
+        return [
+            x for x in now.states if x != name and _TYPES.get(self.boxes[x].kind, "vehicle") == target_type
+        ]
 
     def _touch(self, name: str, other: str, now: Situation) -> bool:
         one, far = ((self.boxes[x], now.states[x]) for x in (name, other))
         return all(x <= 0 for x in gaps_on_road(one, far, free=True))
 
     def _is_clear(self, node: Element, name: str, now: Situation) -> bool:
-        """Whether lanes beside an object exist and no other object is near on them, as in esmini."""
-        read, state = self.document, now.states[name]
+        """Return whether lanes beside an object exist and no other object is near on them, as in esmini."""
+        document, state = self.document, now.states[name]
         way = 1 if state.forward else -1
-        opposite, free = read.flag(node, "oppositeLanes"), read.flag(node, "freeSpace")
-        back, ahead = (read.number(node, f"distance{x}", 0.0) for x in ("Backward", "Forward"))
+        opposite, free = document.flag(node, "oppositeLanes"), document.flag(node, "freeSpace")
+        back, ahead = (document.number(node, f"distance{x}", 0.0) for x in ("Backward", "Forward"))
         ranges = node.findall("RelativeLaneRange")
-        spans = [(read.number(x, "from", -99.0), read.number(x, "to", 99.0)) for x in ranges]
+        spans = [(document.number(x, "from", -99.0), document.number(x, "to", 99.0)) for x in ranges]
         spans = spans or [(-99.0, 99.0)]
         here, lanes = self.positions.lane_at(node, (state.s, state.d))
         if not any(low <= (k - here) * way <= high for k in range(lanes) for low, high in spans):
@@ -202,7 +206,7 @@ class ConditionReader:
         return values[0] if direction == "longitudinal" else values[1]
 
     def _is_off_road(self, node: Element, name: str, now: Situation) -> bool:
-        """Whether the reference point has been on no lane of the map for a duration."""
+        """Return whether the reference point has been on no lane of the map for a duration."""
         state = now.states[name]
         if not self.positions.is_off_road((state.s, state.d)):
             self.off_road.pop((node, name), None)
@@ -218,13 +222,15 @@ class ConditionReader:
             distance = self._distance(node, name, there, other, now)
         else:
             s, d = self.positions.find(target, now.states)
-            there = State(s, d, 0, 0, 0, 0)
+            there = ObjectState(s, d, 0, 0, 0, 0)
             distance = self._distance(node, name, there, None, now)
         closing = (state.v_lon - there.v_lon) * math.copysign(1.0, there.s - state.s)
         return closing > _SLOWEST and self._compare(node, distance / closing)
 
     def _time_headway(self, node: Element, name: str, now: Situation) -> bool:
-        """That to another vehicle, unless that one is behind, or this one stands or drives backwards."""
+        """Decide a headway to a vehicle ahead; false if that one is behind, or this one does not drive
+        forwards.
+        """
         state = now.states[name]
         other, there = self._other(node, now)
         speed, way = _speeds(state)[0], 1 if state.forward else -1
@@ -232,12 +238,14 @@ class ConditionReader:
         holds = self._compare(node, headway)
         return holds and speed > _SLOWEST and (there.s - state.s) * way >= 0
 
-    def _distance(self, node: Element, name: str, there: State, other: str | None, now: Situation) -> float:
+    def _distance(
+        self, node: Element, name: str, there: ObjectState, other: str | None, now: Situation
+    ) -> float:
         """The distance to another object or to a place, as the condition says, at least 0."""
         measure, far = measure_of(self.document, node), None if other is None else self.boxes[other]
         return distance_between(self.positions, measure, (self.boxes[name], now.states[name]), (far, there))
 
-    def _other(self, node: Element, now: Situation) -> tuple[str, State]:
+    def _other(self, node: Element, now: Situation) -> tuple[str, ObjectState]:
         name = self.document.text(node, "entityRef")
         return name, now.states[name]
 
@@ -248,12 +256,12 @@ class ConditionReader:
         return RULES[rule](value, self.document.number(node, "value"))
 
 
-def _speeds(state: State) -> tuple[float, float]:
-    """Along and across a vehicle, to its front and its left."""
+def _speeds(state: ObjectState) -> tuple[float, float]:
+    """Return the speeds of a vehicle to its front and to its left (m/s)."""
     return (state.v_lon, state.v_lat) if state.forward else (-state.v_lon, -state.v_lat)
 
 
-def _accelerations(state: State) -> tuple[float, float]:
+def _accelerations(state: ObjectState) -> tuple[float, float]:
     return (state.a_lon, state.a_lat) if state.forward else (-state.a_lon, -state.a_lat)
 
 
@@ -275,10 +283,10 @@ class Trigger:
         return bool(self._groups)
 
     def fires(self, now: Situation) -> bool:
-        """Whether it fires now; to be asked at every tick, as edges and delays need what was before."""
-        found = [[self._now(x, now) for x in group] for group in self._groups]
-        firing = [[x for x in group if x is not None] for group in found]
-        whole = [x for x, group in zip(firing, found, strict=True) if group and len(x) == len(group)]
+        """Return whether the trigger fires; call it at every tick, as edges and delays need the past."""
+        truths = [[self._now(x, now) for x in group] for group in self._groups]
+        firing = [[x for x in group if x is not None] for group in truths]
+        whole = [x for x, group in zip(firing, truths, strict=True) if group and len(x) == len(group)]
         if whole:
             self.entities = frozenset().union(*(x for group in whole for x in group))
         return bool(whole)

@@ -6,9 +6,9 @@ OverrideControllerValueAction with an active pedal or wheel does the same.
 """
 
 from roadproof.errors import InputError
-from roadproof.extensions.exchange.storyboard.controllers import Arrive, Reacting
+from roadproof.extensions.exchange.storyboard.controllers import ReactiveCourse, SynchronizedArrival
 from roadproof.extensions.exchange.storyboard.document import Document
-from roadproof.runtime.xml_reader import Element
+from roadproof.extensions.maps.xml_reader import Element
 
 REMEDY = "take the controller out of the file to read the vehicle as the storyboard moves it"
 _ACTIONS = ("ControllerAction", "ActivateControllerAction")
@@ -16,14 +16,16 @@ _DOMAINS = ("Lateral", "Longitudinal")
 
 
 class Control:
-    """The vehicles that a controller moves; ``told``: from when on, by name, in words."""
+    """The vehicles that a controller moves; ``controlled``: from when on, by name, in words."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
-        self.told: dict[str, str] = {}
+        self.controlled: dict[str, str] = {}
 
     def takes(self, name: str, action: Element, time: float) -> bool:
-        """Whether an action is about controllers, of which one may move a vehicle from ``time`` (s) on."""
+        """Return whether an action is about controllers, of which one may move a vehicle from ``time`` (s)
+        on.
+        """
         node = next((x for x in action if x.tag in _ACTIONS), None)
         if node is None:
             return False
@@ -31,37 +33,37 @@ class Control:
         for kind in [node] if node.tag == _ACTIONS[1] else [*node]:
             kind.note()
             if self._moves(kind):
-                self.told.setdefault(name, f"which a controller moves from {time:g} s on ({kind.tag})")
+                self.controlled.setdefault(name, f"which a controller moves from {time:g} s on ({kind.tag})")
                 kind.read_all()
         return True
 
     def _moves(self, node: Element) -> bool:
-        read = self.document
+        document = self.document
         match node.tag:
             case "ActivateControllerAction":
-                return any(read.flag(node, x.lower()) for x in _DOMAINS)
+                return any(document.flag(node, x.lower()) for x in _DOMAINS)
             case "AssignControllerAction":
-                moves = any(read.flag(node, f"activate{x}", True) for x in _DOMAINS)
+                moves = any(document.flag(node, f"activate{x}", True) for x in _DOMAINS)
                 for controller in node if not moves else ():
                     controller.read_all()  # it is never activated
                 return moves
             case "OverrideControllerValueAction":
-                moves = any(read.flag(x, "active") for x in node)
+                moves = any(document.flag(x, "active") for x in node)
                 for pedal in node if not moves else ():
                     pedal.read_all()  # it is not active
                 return moves
-        raise read.error(node, "this action is not supported")
+        raise document.error(node, "this action is not supported")
 
-    def check_course(self, name: str, course: Reacting) -> None:
+    def check_course(self, name: str, course: ReactiveCourse) -> None:
         """Raise ``InputError`` where a vehicle reacts to one that a controller moves."""
-        other = course.other if isinstance(course, Arrive) else course.goal.other
-        if other in self.told:
-            told = f"{name} reacts to {other}, {self.told[other]}"
-            raise InputError(f"{self.document.path}: {told}; {REMEDY}")
+        other = course.other if isinstance(course, SynchronizedArrival) else course.goal.other
+        if other in self.controlled:
+            problem = f"{name} reacts to {other}, {self.controlled[other]}"
+            raise InputError(f"{self.document.path}: {problem}; {REMEDY}")
 
     def check_action(self, action: Element) -> None:
         """Raise ``InputError`` where an action refers to a vehicle that a controller moves."""
         for node in action.iter():
             for name in (node.peek("entityRef"), node.peek("masterEntityRef")):
-                if name in self.told:
-                    raise self.document.error(node, f"it refers to {name}, {self.told[name]}; {REMEDY}")
+                if name in self.controlled:
+                    raise self.document.error(node, f"it refers to {name}, {self.controlled[name]}; {REMEDY}")

@@ -6,10 +6,10 @@ All are courses whose ``next`` is the course from the next tick on. Acceleration
 import math
 from dataclasses import replace
 from itertools import pairwise
-from typing import Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
-from roadproof.extensions.exchange.storyboard.courses import Course, Point, Shape, Steady
-from roadproof.extensions.exchange.storyboard.positions import State, States
+from roadproof.extensions.exchange.storyboard.courses import AxisCourse, ConstantSpeed, Point, Shape
+from roadproof.extensions.exchange.storyboard.positions import ObjectState, States
 from roadproof.runtime.records import dataclass
 
 _NEAR = 0.1
@@ -19,11 +19,12 @@ _SLOWEST = 1e-6
 _STEP = 0.01
 
 Axis: TypeAlias = Literal["along", "across"]
+AXES: Final[tuple[Axis, ...]] = ("along", "across")
 Phase: TypeAlias = tuple[float, float]
 """Duration (s) and acceleration (m/s²)."""
 
 
-def on_axis(state: State, axis: Axis) -> Point:
+def point_on_axis(state: ObjectState, axis: Axis) -> Point:
     """A vehicle's motion along the road or across it."""
     if axis == "along":
         return Point(state.s, state.v_lon, state.a_lon)
@@ -55,8 +56,8 @@ class Phases:
 
 
 @dataclass(frozen=True)
-class Limits:
-    """Of acceleration and deceleration (m/s²), of their rates (m/s³) and of speed (m/s)."""
+class DynamicConstraints:
+    """Limits of acceleration and deceleration (m/s²), of their rates (m/s³) and of speed (m/s)."""
 
     acceleration: float = math.inf
     deceleration: float = math.inf
@@ -78,26 +79,26 @@ class DistanceGoal:
     distance: float
     seconds: bool
     apart: float
-    limits: Limits
+    limits: DynamicConstraints
     continuous: bool
 
     def error(self, name: str, states: States) -> float:
-        """How far a vehicle has to go to be at the distance (m)."""
+        """Return how far a vehicle has to go to be at the distance (m)."""
         other = states[self.other]
-        wanted = self.distance * (abs(other.v_lon) if self.seconds else 1.0)
-        wanted += math.copysign(self.apart, self.distance)
-        return on_axis(other, self.axis).place - on_axis(states[name], self.axis).place - wanted
+        target = self.distance * (abs(other.v_lon) if self.seconds else 1.0)
+        target += math.copysign(self.apart, self.distance)
+        return point_on_axis(other, self.axis).place - point_on_axis(states[name], self.axis).place - target
 
 
 @dataclass(frozen=True)
-class KeepDistance:
+class DistanceKeeping:
     """Is at the distance of a ``goal``.
 
     Without limits of acceleration it is there at once. With them it is a spring with critical damping, as in
     esmini: stiffness 0.4 times the limit of acceleration; limits of jerk hold where acceleration grows.
     """
 
-    now: Course
+    now: AxisCourse
     name: str
     goal: DistanceGoal
     acceleration: float = 0.0
@@ -109,23 +110,23 @@ class KeepDistance:
     def ended(self, time: float, along: Point) -> bool:
         return self.reached
 
-    def next(self, time: float, states: States) -> "KeepDistance":
-        """From ``time`` on, where all vehicles are as ``states`` say."""
+    def next(self, time: float, states: States) -> "DistanceKeeping":
+        """Return the controller from ``time`` on, with all vehicles as in ``states``."""
         goal, most = self.goal, self.goal.limits
-        here, other = (on_axis(states[x], goal.axis) for x in (self.name, goal.other))
+        here, other = (point_on_axis(states[x], goal.axis) for x in (self.name, goal.other))
         error = goal.error(self.name, states)
         reached = not goal.continuous and abs(error) < _NEAR
         if math.isinf(most.acceleration) and math.isinf(most.deceleration):
             if goal.axis == "across" and abs(error) > most.speed * _STEP:
-                glide = Steady(time, here.place, math.copysign(most.speed, error))
+                glide = ConstantSpeed(time, here.place, math.copysign(most.speed, error))
                 return replace(self, now=glide, reached=reached)
             there = Phases(time, here.place + error, other.speed, ((_STEP, other.acceleration),))
             return replace(self, now=there, reached=not goal.continuous)
-        pull = self._pull(error, here, other)
+        pull = self._spring_acceleration(error, here, other)
         course = Phases(time, here.place, here.speed, ((_STEP, 0.0 if reached else pull),))
         return replace(self, now=course, acceleration=pull, reached=reached)
 
-    def _pull(self, error: float, here: Point, other: Point) -> float:
+    def _spring_acceleration(self, error: float, here: Point, other: Point) -> float:
         """The acceleration of the spring within the limits."""
         most, before = self.goal.limits, self.acceleration
         tension = most.acceleration if error < 0 else most.deceleration
@@ -141,7 +142,7 @@ class KeepDistance:
 
 
 @dataclass(frozen=True)
-class Arrive:
+class SynchronizedArrival:
     """Is at ``place`` when another vehicle, if it keeps its speed, is at ``other_place``.
 
     With ``final_speed``: two phases of the same acceleration, or with a stop between; otherwise constant
@@ -150,7 +151,7 @@ class Arrive:
     many metres, and in the last so many seconds.
     """
 
-    now: Course
+    now: AxisCourse
     name: str
     other: str
     place: float
@@ -167,18 +168,18 @@ class Arrive:
     def ended(self, time: float, along: Point) -> bool:
         return self.over
 
-    def next(self, time: float, states: States) -> "Arrive":
-        """From ``time`` on, where all vehicles are as ``states`` say."""
+    def next(self, time: float, states: States) -> "SynchronizedArrival":
+        """Return the controller from ``time`` on, with all vehicles as in ``states``."""
         state, other = states[self.name], states[self.other]
         way, left = self.place - state.s, self.other_place - other.s
         over = way <= _STEP * abs(state.v_lon) / 2 or left <= _STEP * abs(other.v_lon) / 2
         if over or other.v_lon == self.planned:
             return replace(self, over=over)
         if other.v_lon <= _SLOWEST:
-            return replace(self, now=Steady(time, state.s), planned=other.v_lon)
+            return replace(self, now=ConstantSpeed(time, state.s), planned=other.v_lon)
         duration = left / other.v_lon
         if self.final_speed is None:
-            course: Course = Steady(time, state.s, way / duration)
+            course: AxisCourse = ConstantSpeed(time, state.s, way / duration)
         else:
             final = self.final_speed + self.share * other.v_lon
             last = self.steady[1] + (self.steady[0] / final if final > _SLOWEST else 0.0)
@@ -186,7 +187,7 @@ class Arrive:
             if way <= 0 or duration <= 0:
                 course = Phases(time, state.s, final, ())
             else:
-                phases = arrival(way, duration, (state.v_lon, final))
+                phases = arrival_phases(way, duration, (state.v_lon, final))
                 course = Phases(time, state.s, state.v_lon, phases)
         return replace(self, now=course, planned=other.v_lon)
 
@@ -219,10 +220,10 @@ class SpeedGoal:
 
 
 @dataclass(frozen=True)
-class FollowSpeed:
+class SpeedFollowing:
     """Has the speed of a ``goal`` for ever."""
 
-    now: Course
+    now: AxisCourse
     name: str
     goal: SpeedGoal
 
@@ -232,19 +233,19 @@ class FollowSpeed:
     def ended(self, time: float, along: Point) -> bool:
         return False
 
-    def next(self, time: float, states: States) -> "FollowSpeed":
-        """From ``time`` on, where all vehicles are as ``states`` say."""
+    def next(self, time: float, states: States) -> "SpeedFollowing":
+        """Return the controller from ``time`` on, with all vehicles as in ``states``."""
         here, goal = states[self.name], self.goal
         speed = goal.speed(time, states) if goal.duration <= 0 and time <= goal.begin else here.v_lon
         change = (goal.speed(time + _STEP, states) - speed) / _STEP
         return replace(self, now=Phases(time, here.s, speed, ((_STEP, change),)))
 
 
-Reacting: TypeAlias = KeepDistance | Arrive | FollowSpeed
+ReactiveCourse: TypeAlias = DistanceKeeping | SynchronizedArrival | SpeedFollowing
 """Courses that look at another vehicle at each tick."""
 
 
-def arrival(way: float, duration: float, speeds: tuple[float, float]) -> tuple[Phase, ...]:
+def arrival_phases(way: float, duration: float, speeds: tuple[float, float]) -> tuple[Phase, ...]:
     """Phases in which a vehicle goes ``way`` m in ``duration`` s from one speed to another.
 
     Two with the same acceleration, one of them negative; where this were backwards, a stop between.

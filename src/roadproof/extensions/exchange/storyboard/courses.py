@@ -62,13 +62,13 @@ class Point:
     acceleration: float = 0.0
 
 
-class Course(Protocol):
+class AxisCourse(Protocol):
     """A motion in one direction. ``along``: the motion along the road at the same time."""
 
     def at(self, time: float, along: Point) -> Point: ...
 
     def ended(self, time: float, along: Point) -> bool:
-        """Whether the transition is over."""
+        """Return whether the transition is over."""
         ...
 
 
@@ -76,7 +76,7 @@ _SOON = 1e-9
 
 
 @dataclass(frozen=True)
-class Steady:
+class ConstantSpeed:
     """Constant speed from ``begin`` (s) on."""
 
     begin: float
@@ -92,7 +92,7 @@ class Steady:
 
 @dataclass(frozen=True)
 class SpeedTransition:
-    """From one speed to another in ``duration`` s, constant afterwards."""
+    """A change from one speed to another in ``duration`` s, constant afterwards."""
 
     begin: float
     start: float
@@ -114,7 +114,7 @@ class SpeedTransition:
 
 
 @dataclass(frozen=True)
-class Capped:
+class CappedTransition:
     """A change of speed up to a time (s) at which the largest speed of a vehicle is reached, then steady."""
 
     course: SpeedTransition
@@ -130,7 +130,7 @@ class Capped:
         return time >= self.until - _SOON
 
 
-def capped(course: SpeedTransition, most: float) -> SpeedTransition | Capped:
+def cap_speed(course: SpeedTransition, most: float) -> SpeedTransition | CappedTransition:
     """A change of speed that ends where ``most`` (m/s) is reached, forwards or backwards."""
     low, high = course.speeds
     if abs(high) <= most or abs(low) >= abs(high):
@@ -140,12 +140,12 @@ def capped(course: SpeedTransition, most: float) -> SpeedTransition | Capped:
     for _ in range(60):  # f ascends
         middle = (begin + end) / 2
         begin, end = (middle, end) if course.shape.value(middle) < share else (begin, middle)
-    return Capped(course, course.begin + end * course.duration)
+    return CappedTransition(course, course.begin + end * course.duration)
 
 
 @dataclass(frozen=True)
 class PlaceTransition:
-    """From one place to another in ``duration`` s, at rest afterwards."""
+    """A change from one place to another in ``duration`` s, at rest afterwards."""
 
     begin: float
     places: tuple[float, float]
@@ -167,7 +167,7 @@ class PlaceTransition:
 
 @dataclass(frozen=True)
 class PlaceOverDistance:
-    """From one place to another while the vehicle goes ``length`` m from ``start``, at rest afterwards."""
+    """A change of place while the vehicle goes ``length`` m from ``start``, at rest afterwards."""
 
     start: float
     places: tuple[float, float]
@@ -192,29 +192,29 @@ class PlaceOverDistance:
 
 
 @dataclass(frozen=True)
-class Shifted:
-    """Another motion that is counted from another place."""
+class ShiftedCourse:
+    """A course shifted by a distance."""
 
-    course: Course
+    course: AxisCourse
     by: float
 
     def at(self, time: float, along: Point) -> Point:
-        found = self.course.at(time, along)
-        return Point(found.place - self.by, found.speed, found.acceleration)
+        point = self.course.at(time, along)
+        return Point(point.place - self.by, point.speed, point.acceleration)
 
     def ended(self, time: float, along: Point) -> bool:
         return self.course.ended(time, along)
 
 
 @dataclass(frozen=True)
-class OnPath:
+class PathCourse:
     """Places, along the road or across it, at lengths of a path on which a vehicle moves as ``motion`` says.
 
     ``straight``: between points; otherwise on cubics through them. ``across``: at rest after the last point;
     otherwise on along the road.
     """
 
-    motion: Course
+    motion: AxisCourse
     lengths: Floats
     places: Floats
     straight: bool
@@ -245,13 +245,13 @@ class OnPath:
 
 
 @dataclass(frozen=True)
-class Guided:
+class TimedTrajectory:
     """The motion of a trajectory from ``begin`` to ``end`` (s); ``before`` until then, steady afterwards.
 
     ``speed``: that afterwards.
     """
 
-    before: Course
+    before: AxisCourse
     begin: float
     end: float
     point: Callable[[float], Point]
@@ -263,7 +263,7 @@ class Guided:
         if time <= self.end + _SOON:
             return self.point(min(max(time, self.begin), self.end))
         last = self.point(self.end)
-        return Steady(self.end, last.place, self.speed).at(time, along)
+        return ConstantSpeed(self.end, last.place, self.speed).at(time, along)
 
     def ended(self, time: float, along: Point) -> bool:
         return time >= self.end - _SOON

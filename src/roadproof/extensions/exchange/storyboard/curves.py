@@ -6,7 +6,9 @@ from roadproof.extensions.traffic.formats.recording import Floats
 
 
 def curve(knots: Floats, places: Floats, at: Floats) -> tuple[Floats, Floats, Floats]:
-    """Place and its first two derivatives ``at`` values between knots, on the cubics through ``places``."""
+    """Return place and its first two derivatives ``at`` values between knots, on the cubics through
+    ``places``.
+    """
     slopes = _slopes(knots, places)
     k = np.clip(np.searchsorted(knots, at, side="right") - 1, 0, len(knots) - 2)
     step = knots[k + 1] - knots[k]
@@ -19,7 +21,7 @@ def curve(knots: Floats, places: Floats, at: Floats) -> tuple[Floats, Floats, Fl
 
 
 def _slopes(knots: Floats, places: Floats) -> Floats:
-    """At each knot the slope of the parabola through it and its neighbours."""
+    """Return at each knot the slope of the parabola through it and its neighbours."""
     means = np.diff(places) / np.diff(knots)
     if len(means) == 1:
         return np.repeat(means, 2)

@@ -7,16 +7,16 @@ turned against each other count with their extents along these axes.
 
 import math
 
-from roadproof.extensions.exchange.storyboard.box import Box
+from roadproof.extensions.exchange.storyboard.box import ObjectBox
 from roadproof.extensions.exchange.storyboard.document import Document
-from roadproof.extensions.exchange.storyboard.positions import Positions, State
+from roadproof.extensions.exchange.storyboard.positions import ObjectState, Positions
+from roadproof.extensions.maps.xml_reader import Element
 from roadproof.runtime.records import dataclass
-from roadproof.runtime.xml_reader import Element
 
 _EUCLIDEAN = ("euclidianDistance", "cartesianDistance", "euclideanDistance")
 _AXES = ("longitudinal", "lateral")
 _SYSTEMS = ("entity", "lane", "road")
-_POINT = Box("", "", 0.0, 0.0, (0.0, 0.0))
+_POINT = ObjectBox("", "", 0.0, 0.0, (0.0, 0.0))
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,8 @@ def measure_of(document: Document, node: Element) -> Measure:
     if not kind:
         kind, system = ("longitudinal", system or "road") if along else ("euclidianDistance", system)
     if kind not in (*_AXES, *_EUCLIDEAN):
-        told = f"relativeDistanceType={kind}: one of {', '.join((*_AXES, _EUCLIDEAN[0]))} is needed"
-        raise document.error(node, told)
+        problem = f"relativeDistanceType={kind}: one of {', '.join((*_AXES, _EUCLIDEAN[0]))} is needed"
+        raise document.error(node, problem)
     system = system or "entity"
     if system not in _SYSTEMS:
         raise document.error(node, f"coordinateSystem={system}: one of {', '.join(_SYSTEMS)} is supported")
@@ -44,9 +44,12 @@ def measure_of(document: Document, node: Element) -> Measure:
 
 
 def distance_between(
-    positions: Positions, measure: Measure, one: tuple[Box, State], other: tuple[Box | None, State]
+    positions: Positions,
+    measure: Measure,
+    one: tuple[ObjectBox, ObjectState],
+    other: tuple[ObjectBox | None, ObjectState],
 ) -> float:
-    """How far (m) an object, or a place, is from another one; at least 0."""
+    """Return how far (m) an object, or a place, is from another one; at least 0."""
     (box, state), (far, there) = one, (other[0] or _POINT, other[1])
     if measure.kind in _AXES and measure.system != "entity":
         along, across = gaps_on_road((box, state), (far, there), measure.free)
@@ -57,7 +60,9 @@ def distance_between(
     return math.hypot(max(along, 0.0), max(across, 0.0))
 
 
-def gaps_on_road(one: tuple[Box, State], other: tuple[Box, State], free: bool) -> tuple[float, float]:
+def gaps_on_road(
+    one: tuple[ObjectBox, ObjectState], other: tuple[ObjectBox, ObjectState], free: bool
+) -> tuple[float, float]:
     """Distances along and across the road; between boxes if ``free``, negative where they overlap."""
     (box, state), (far, there) = one, other
     apart = [there.s - state.s, there.d - state.d]
@@ -69,23 +74,23 @@ def gaps_on_road(one: tuple[Box, State], other: tuple[Box, State], free: bool) -
 
 
 def _gaps_in_plane(
-    positions: Positions, one: tuple[Box, State], other: tuple[Box, State], free: bool
+    positions: Positions, one: tuple[ObjectBox, ObjectState], other: tuple[ObjectBox, ObjectState], free: bool
 ) -> tuple[float, float]:
     """Distances along and across the first object; between boxes if ``free``."""
     (box, state), (far, there) = one, other
     x, y, heading = positions.pose_of(state)
     far_x, far_y, far_heading = positions.pose_of(there)
-    ahead, left = _turned((far_x - x, far_y - y), -heading)
+    ahead, left = _rotate((far_x - x, far_y - y), -heading)
     if not free:
         return abs(ahead), abs(left)
     turn = far_heading - heading
-    centre = _turned(far.centre, turn)
+    centre = _rotate(far.centre, turn)
     c, s = abs(math.cos(turn)), abs(math.sin(turn))
     length, width = far.length * c + far.width * s, far.length * s + far.width * c
     along = abs(ahead + centre[0] - box.centre[0]) - (box.length + length) / 2
     return along, abs(left + centre[1] - box.centre[1]) - (box.width + width) / 2
 
 
-def _turned(point: tuple[float, float], angle: float) -> tuple[float, float]:
+def _rotate(point: tuple[float, float], angle: float) -> tuple[float, float]:
     (x, y), c, s = point, math.cos(angle), math.sin(angle)
     return x * c - y * s, x * s + y * c

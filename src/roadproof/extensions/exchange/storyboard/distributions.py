@@ -18,10 +18,10 @@ from statistics import NormalDist
 from typing import TypeAlias
 
 from roadproof.errors import InputError
-from roadproof.extensions.exchange.storyboard.expressions import replaced
+from roadproof.extensions.exchange.storyboard.expressions import replace_parameters
 from roadproof.extensions.exchange.storyboard.rules import texts_compare
+from roadproof.extensions.maps.xml_reader import Element, number_in, read_xml
 from roadproof.runtime.records import dataclass
-from roadproof.runtime.xml_reader import Element, number_in, read_xml
 
 MOST = 500
 """Scenarios of a distribution."""
@@ -31,8 +31,8 @@ _LARGEST = 10**6
 Values: TypeAlias = Mapping[str, str]
 
 
-def numbered(path: Path, number: int) -> Path:
-    """What a concrete scenario of a distribution is called."""
+def numbered_scenario_path(path: Path, number: int) -> Path:
+    """Return the path that names a concrete scenario of a distribution."""
     return path.with_name(f"{path.stem}#{number}{path.suffix}")
 
 
@@ -45,7 +45,7 @@ def split(path: Path) -> tuple[Path, int] | None:
 
 
 def is_distribution(path: Path) -> bool:
-    """Whether a file of OpenSCENARIO has a distribution in place of a storyboard."""
+    """Return whether a file of OpenSCENARIO has a distribution in place of a storyboard."""
     try:
         return path.suffix == ".xosc" and f"<{_DISTRIBUTION}".encode() in path.read_bytes()
     except OSError:
@@ -56,7 +56,7 @@ def scenarios_of(path: Path) -> tuple[Path, ...]:
     """The concrete scenarios of a file: it itself unless it has a distribution. Raises ``InputError``."""
     if not is_distribution(path):
         return (path,)
-    return tuple(numbered(path, x) for x in read_distribution(path).numbers)
+    return tuple(numbered_scenario_path(path, x) for x in read_distribution(path).numbers)
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Distribution:
 
     @property
     def total(self) -> int:
-        """How many sets of values there are."""
+        """Return how many sets of values there are."""
         return len(self.samples) or math.prod(map(len, self.choices))
 
     def values(self, number: int) -> Values:
@@ -79,12 +79,12 @@ class Distribution:
             raise InputError(f"{self.path}: there is no scenario {number}; they are 1 to {self.total}")
         if self.samples:
             return self.samples[number - 1]
-        found: dict[str, str] = {}
+        values: dict[str, str] = {}
         left = number - 1
         for choice in reversed(self.choices):
             left, k = divmod(left, len(choice))
-            found = {**choice[k], **found}
-        return found
+            values = {**choice[k], **values}
+        return values
 
     @cached_property
     def numbers(self) -> tuple[int, ...]:
@@ -92,21 +92,21 @@ class Distribution:
         everything = range(1, self.total + 1)
         chosen = everything if len(everything) <= MOST else sorted(random.Random(0).sample(everything, MOST))
         root = read_xml(self.scenario, "OpenSCENARIO")
-        found = tuple(x for x in chosen if self._is_allowed(root, self.values(x)))
-        if not found:
+        numbers = tuple(x for x in chosen if self._is_allowed(root, self.values(x)))
+        if not numbers:
             raise InputError(f"{self.path}: no set of values keeps the constraints of {self.scenario}")
-        return found
+        return numbers
 
     @property
-    def told(self) -> str:
-        """How many of the scenarios are read, and why not all of them."""
-        told = f"{len(self.numbers)} of {self.total} scenarios of {self.path.name} are read"
+    def note(self) -> str:
+        """Return how many of the scenarios are read, and why not all of them."""
+        summary = f"{len(self.numbers)} of {self.total} scenarios of {self.path.name} are read"
         if self.total > MOST:
-            told += f", of {MOST} that were drawn"
-        return told
+            summary += f", of {MOST} that were drawn"
+        return summary
 
     def _is_allowed(self, root: Element, values: Values) -> bool:
-        """Whether each value keeps all constraints of one of its parameter's groups."""
+        """Return whether each value keeps all constraints of one of its parameter's groups."""
         known: dict[str, str] = {}
         for node in root.findall("ParameterDeclarations/ParameterDeclaration"):
             name = (node.get("name") or "").lstrip("$")
@@ -124,12 +124,12 @@ def check_constraints(path: Path, node: Element, name: str, known: Values) -> No
         " and ".join(f"{x.get('rule')} {x.get('value')}" for x in group.findall("ValueConstraint"))
         for group in node.findall("ConstraintGroup")
     )
-    told = f"parameter {name}: value={known[name]} breaks its ConstraintGroup"
-    raise InputError(f"{path}: {told}: {groups} is needed; change the value or the constraint")
+    problem = f"parameter {name}: value={known[name]} breaks its ConstraintGroup"
+    raise InputError(f"{path}: {problem}: {groups} is needed; change the value or the constraint")
 
 
 def _keeps_constraints(path: Path, node: Element, name: str, known: Values) -> bool:
-    """Whether a parameter keeps all constraints of one of its groups, or has none."""
+    """Return whether a parameter keeps all constraints of one of its groups, or has none."""
     groups = node.findall("ConstraintGroup")
     return not groups or any(
         all(_keeps(path, known, name, x) for x in group.findall("ValueConstraint")) for group in groups
@@ -138,7 +138,7 @@ def _keeps_constraints(path: Path, node: Element, name: str, known: Values) -> b
 
 def _value(path: Path, node: Element, text: str, known: Values) -> str:
     try:
-        return replaced(text, known)
+        return replace_parameters(text, known)
     except ValueError as error:
         raise InputError(f"{path}: {node.tag} {node.get('name', '')}={text}: {error}") from None
 
@@ -173,10 +173,10 @@ def read_distribution(path: Path) -> Distribution:
 
 
 def _child(path: Path, node: Element, tag: str) -> Element:
-    found = node.find(tag)
-    if found is None:
+    child = node.find(tag)
+    if child is None:
         raise InputError(f"{path}: {node.tag}: {tag} is needed")
-    return found
+    return child
 
 
 def _number(path: Path, node: Element, name: str) -> float:
@@ -187,18 +187,18 @@ def _choices(path: Path, node: Element) -> tuple[Values, ...]:
     """The values of a parameter, or the sets of values of several, that a deterministic element lists."""
     if node.tag == "DeterministicMultiParameterDistribution":
         sets = _child(path, node, "ValueSetDistribution").findall("ParameterValueSet")
-        found = [
+        choices = [
             {_name(path, x, "parameterRef"): x.get("value", "") for x in one.findall("ParameterAssignment")}
             for one in sets
         ]
     elif node.tag == "DeterministicSingleParameterDistribution":
         name = _name(path, node, "parameterName")
-        found = [{name: value} for value in _single(path, node)]
+        choices = [{name: value} for value in _single(path, node)]
     else:
         raise InputError(f"{path}: {node.tag} is not supported")
-    if not found:
+    if not choices:
         raise InputError(f"{path}: {node.tag}: it has no values")
-    return tuple(found)
+    return tuple(choices)
 
 
 def _name(path: Path, node: Element, attribute: str) -> str:
@@ -224,12 +224,12 @@ def _single(path: Path, node: Element) -> list[str]:
 
 def _decimal(path: Path, node: Element, name: str) -> Decimal:
     try:
-        found = Decimal(node.get(name) or "")
+        value = Decimal(node.get(name) or "")
     except InvalidOperation:
-        found = Decimal("nan")
-    if not found.is_finite():
+        value = Decimal("nan")
+    if not value.is_finite():
         raise InputError(f"{path}: {node.tag}: {name} is {node.get(name)!r}; a finite number is needed")
-    return found
+    return value
 
 
 def _samples(path: Path, node: Element) -> tuple[Values, ...]:
@@ -240,14 +240,14 @@ def _samples(path: Path, node: Element) -> tuple[Values, ...]:
     seed = _number(path, node, "randomSeed") if node.get("randomSeed") else 0.0
     chance = random.Random(seed)
     parameters = node.findall("StochasticDistribution")
-    found = []
+    samples = []
     for _ in range(int(runs)):
         values = {}
         for parameter in parameters:
             (kind, *_) = parameter
             values[_name(path, parameter, "parameterName")] = _sample(path, kind, chance.random())
-        found.append(values)
-    return tuple(found)
+        samples.append(values)
+    return tuple(samples)
 
 
 def _sample(path: Path, node: Element, share: float) -> str:
@@ -280,7 +280,7 @@ def _limits(path: Path, node: Element) -> tuple[float, float]:
 
 
 def _normal(path: Path, node: Element, share: float) -> float:
-    """Within the limits of a Range, where it has one."""
+    """Return a quantile of a normal distribution, cut to its Range, where it has one."""
     mean, variance = (_number(path, node, x) for x in ("expectedValue", "variance"))
     if variance <= 0:
         raise InputError(f"{path}: NormalDistribution: variance={variance:g} must be above 0")
@@ -290,12 +290,12 @@ def _normal(path: Path, node: Element, share: float) -> float:
         return normal.inv_cdf(min(max(share, 1e-12), 1 - 1e-12))
     low, high = _limits(path, limits)
     below, above = normal.cdf(low), normal.cdf(high)
-    found = below + share * (above - below)
-    return min(max(normal.inv_cdf(found), low), high) if 0 < found < 1 else low
+    probability = below + share * (above - below)
+    return min(max(normal.inv_cdf(probability), low), high) if 0 < probability < 1 else low
 
 
 def _poisson(path: Path, node: Element, share: float) -> int:
-    """Within the limits of a Range, where it has one."""
+    """Return a quantile of a Poisson distribution, cut to its Range, where it has one."""
     mean = _number(path, node, "expectedValue")
     if not 0 < mean <= 1000:
         raise InputError(f"{path}: PoissonDistribution: expectedValue={mean:g} must be above 0, at most 1000")
@@ -314,6 +314,6 @@ def _weighed(weights: list[float], share: float, path: Path) -> tuple[int, float
     sums = [*accumulate(weights)]
     if not weights or min(weights) < 0 or sums[-1] <= 0:
         raise InputError(f"{path}: weights={weights}: positive numbers are needed")
-    wanted = share * sums[-1]
-    k = next((k for k, x in enumerate(sums) if wanted < x), len(sums) - 1)
-    return k, (wanted - sums[k] + weights[k]) / weights[k] if weights[k] else 0.0
+    target = share * sums[-1]
+    k = next((k for k, x in enumerate(sums) if target < x), len(sums) - 1)
+    return k, (target - sums[k] + weights[k]) / weights[k] if weights[k] else 0.0

@@ -12,14 +12,14 @@ from roadproof.errors import InputError
 from roadproof.extensions.exchange.storyboard.distributions import (
     Values,
     check_constraints,
-    numbered,
+    numbered_scenario_path,
     read_distribution,
     split,
 )
-from roadproof.extensions.exchange.storyboard.expressions import replaced
+from roadproof.extensions.exchange.storyboard.expressions import replace_parameters
 from roadproof.extensions.exchange.storyboard.harmless import HARMLESS
+from roadproof.extensions.maps.xml_reader import Element, number_in, parts_not_read, read_xml, summary_of
 from roadproof.runtime.records import dataclass
-from roadproof.runtime.xml_reader import Element, number_in, read_xml, summary_of, unread
 
 _OWNERS = ("ScenarioObject", "ManeuverGroup", "TrajectoryRef", "RouteRef")
 """Elements that may have a CatalogReference in place of an element that is written out."""
@@ -31,7 +31,8 @@ _TRUTHS = {"true": True, "1": True, "false": False, "0": False}
 class Document:
     """A file and, for each of its elements, where it is in the file.
 
-    ``folder``: where it names other files from. ``told``: which scenario of a distribution it is, if any.
+    ``folder``: where it names other files from. ``distribution_note``: which scenario of a distribution it
+    is, if any.
     ``references``: elements that entries of catalogues have replaced.
     """
 
@@ -39,7 +40,7 @@ class Document:
     root: Element
     places: dict[Element, str]
     folder: Path
-    told: str
+    distribution_note: str
     references: tuple[Element, ...] = ()
 
     def error(self, node: Element, rule: str) -> InputError:
@@ -59,10 +60,10 @@ class Document:
 
     def child(self, node: Element, way: str) -> Element:
         """The element at ``way`` below ``node``."""
-        found = node.find(way)
-        if found is None:
+        child = node.find(way)
+        if child is None:
             raise self.error(node, f"{way} is needed")
-        return found
+        return child
 
     def only(self, node: Element) -> Element:
         """The only element inside ``node``."""
@@ -87,34 +88,34 @@ class Document:
 
     def left_out(self) -> tuple[str, ...]:
         """Parts of the file that were not read and that may have an effect, a line for each kind."""
-        parts = [part for root in (self.root, *self.references) for part in unread(root, HARMLESS)]
+        parts = [part for root in (self.root, *self.references) for part in parts_not_read(root, HARMLESS)]
         return summary_of(tuple(parts))
 
 
 def open_document(path: Path) -> Document:
     """The file with its parameters and catalogues put in. Raises ``InputError``."""
-    of_distribution = split(path)
-    file, values, told = path, dict[str, str](), ""
-    if of_distribution is not None:
-        distribution = read_distribution(of_distribution[0])
-        file, values = distribution.scenario, dict(distribution.values(of_distribution[1]))
-        told = f"values: {', '.join(f'{x}={y}' for x, y in values.items())}; {distribution.told}"
+    distribution_number = split(path)
+    file, values, note = path, dict[str, str](), ""
+    if distribution_number is not None:
+        distribution = read_distribution(distribution_number[0])
+        file, values = distribution.scenario, dict(distribution.values(distribution_number[1]))
+        note = f"values: {', '.join(f'{x}={y}' for x, y in values.items())}; {distribution.note}"
     root = read_xml(file, "OpenSCENARIO")
     if root.find("Catalog") is not None:
         raise InputError(f"{path}: this is a catalogue, which has no storyboard; name a scenario")
     if root.find("ParameterValueDistribution") is not None:
-        one = numbered(path, 1).name
+        one = numbered_scenario_path(path, 1).name
         raise InputError(f"{path}: ParameterValueDistribution: name one of its scenarios, such as {one}")
-    _assign(path, root, values)
+    _assign_parameters(path, root, values)
     places = dict[Element, str]()
-    _put_values(path, root, {}, "", places)
-    document = Document(path, root, places, file.parent, told)
+    _replace_parameters_below(path, root, {}, "", places)
+    document = Document(path, root, places, file.parent, note)
     references = []
     for owner in [x for x in root.iter() if x.tag in _OWNERS]:
         reference = owner.find("CatalogReference")
         if reference is not None:
             owner.remove(reference)
-            owner.append(_entry(document, reference))
+            owner.append(_catalogue_entry(document, reference))
             references.append(reference)
     document = replace(document, references=tuple(references))
     header = root.find("FileHeader")
@@ -126,8 +127,8 @@ def open_document(path: Path) -> Document:
     return document
 
 
-def _assign(path: Path, root: Element, values: Values) -> None:
-    """Give the parameters of a scenario the values of a distribution. Raises ``InputError``."""
+def _assign_parameters(path: Path, root: Element, values: Values) -> None:
+    """Set the parameters of a scenario to the values of a distribution. Raises ``InputError``."""
     declared = {
         (x.get("name") or "").lstrip("$"): x
         for x in root.findall("ParameterDeclarations/ParameterDeclaration")
@@ -138,7 +139,7 @@ def _assign(path: Path, root: Element, values: Values) -> None:
         declared[name].set("value", value)
 
 
-def _put_values(
+def _replace_parameters_below(
     path: Path, node: Element, values: Mapping[str, str], where: str, places: dict[Element, str]
 ) -> None:
     """Replace parameters below ``node``, and note where each element is."""
@@ -147,7 +148,7 @@ def _put_values(
     for key, text in node.attrib.items():
         if "$" in text and key != "parameterRef" and node.tag != "ParameterDeclaration":
             try:
-                node.set(key, replaced(text, values))
+                node.set(key, replace_parameters(text, values))
             except ValueError as error:
                 if key != "name":  # names may be texts with $ that no one refers to
                     raise InputError(f"{path}: {where}: {key}={text}: {error}") from None
@@ -155,18 +156,18 @@ def _put_values(
         declared = (declaration.get("name") or "").lstrip("$")
         value = declaration.get("value") or ""
         try:
-            values = {**values, declared: replaced(value, values)}
+            values = {**values, declared: replace_parameters(value, values)}
         except ValueError as error:
             raise InputError(f"{path}: {where}: parameter {declared}={value}: {error}") from None
         check_constraints(path, declaration, declared, values)
     for child in node:
-        _put_values(path, child, values, where, places)
+        _replace_parameters_below(path, child, values, where, places)
 
 
-def _entry(document: Document, reference: Element) -> Element:
+def _catalogue_entry(document: Document, reference: Element) -> Element:
     """The element of a catalogue that a CatalogReference names."""
     catalog, name = (document.text(reference, x) for x in ("catalogName", "entryName"))
-    given = {
+    arguments = {
         document.text(x, "parameterRef").lstrip("$"): document.text(x, "value")
         for x in reference.findall("ParameterAssignments/ParameterAssignment")
     }
@@ -177,11 +178,11 @@ def _entry(document: Document, reference: Element) -> Element:
             if known.get("name") == catalog and entry is not None:
                 for declaration in entry.findall("ParameterDeclarations/ParameterDeclaration"):
                     declared = (declaration.get("name") or "").lstrip("$")
-                    declaration.set("value", given.pop(declared, declaration.get("value") or ""))
-                if given:
-                    raise document.error(reference, f"{name} declares no parameter {', '.join(given)}")
+                    declaration.set("value", arguments.pop(declared, declaration.get("value") or ""))
+                if arguments:
+                    raise document.error(reference, f"{name} declares no parameter {', '.join(arguments)}")
                 where = f"{document.places[reference]} {name}"
-                _put_values(file, entry, {}, where, document.places)
+                _replace_parameters_below(file, entry, {}, where, document.places)
                 return entry
     shown = ", ".join(map(str, folders)) or "CatalogLocations"
     raise document.error(reference, f"no {name} in a catalogue {catalog} in {shown}")

@@ -14,38 +14,38 @@ from typing import TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.extensions.exchange.storyboard.actions import Actor
-from roadproof.extensions.exchange.storyboard.box import Box
+from roadproof.extensions.exchange.storyboard.box import ObjectBox
 from roadproof.extensions.exchange.storyboard.conditions import TICKS
 from roadproof.extensions.exchange.storyboard.control import REMEDY
-from roadproof.extensions.exchange.storyboard.controllers import Phases, Reacting
+from roadproof.extensions.exchange.storyboard.controllers import Phases, ReactiveCourse
 from roadproof.extensions.exchange.storyboard.courses import (
-    Capped,
-    Course,
+    AxisCourse,
+    CappedTransition,
     PlaceTransition,
     Point,
     SpeedTransition,
 )
-from roadproof.extensions.exchange.storyboard.positions import State
-from roadproof.extensions.exchange.storyboard.run import Play
-from roadproof.extensions.exchange.storyboard.stage import open_stage, played
+from roadproof.extensions.exchange.storyboard.play import Play
+from roadproof.extensions.exchange.storyboard.positions import ObjectState
+from roadproof.extensions.exchange.storyboard.stage import open_stage, run_stage
 from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Across, Along, Drive, Motion, motion_of
+from roadproof.world.not_read import LEFT_OUT
 from roadproof.world.road import Road
-from roadproof.world.signals import STARTING, Kind
-from roadproof.world.unread import LEFT_OUT
+from roadproof.world.signals import Kind
 
 DIGITS = 9
 CLOSE = 1e-4
 """m"""
 _TIME_DIGITS = 6
 _SHORTEST = 0.02
-_LOOKS = 8
+_CHECK_POINTS = 8
 """So many instants inside a piece are compared with the motion."""
 _SMALL = 1e-7
 _JUMP = 1e-3
 """m/s: a greater change of the speed at one instant is none that a drive has."""
 _KINDS: dict[str, Kind] = {"Car": "car", "Truck": "truck", "Motorcycle": "motorcycle"}
-Axis: TypeAlias = Callable[[float], Point]
+AxisMotion: TypeAlias = Callable[[float], Point]
 """Place, speed and acceleration in one direction by time (s)."""
 
 
@@ -66,7 +66,7 @@ class StoryboardDrive:
 
     @property
     def note(self) -> str:
-        """What is told of it."""
+        """The note about it."""
         ends = f"the storyboard ends at {float(self.horizon):g} s: {self.ending}"
         goes_on = "in dense time vehicles then go on with constant speeds"
         error = f"{self.place_error:.1g} m and {self.speed_error:.1g} m/s of the storyboard"
@@ -79,7 +79,7 @@ class _Error:
     place: float = 0.0
     speed: float = 0.0
 
-    def see(self, place: float, speed: float) -> None:
+    def update(self, place: float, speed: float) -> None:
         self.place, self.speed = max(self.place, abs(place)), max(self.speed, abs(speed))
 
 
@@ -88,8 +88,8 @@ def read_storyboard_drive(path: Path) -> StoryboardDrive:
 
     All of them have to be on the road, and to drive along it, all the time, without jumps of place or speed.
     """
-    stage, play = played(open_stage(path))
-    unread = (*stage.document.left_out(), *stage.road.unread)
+    stage, play = run_stage(open_stage(path))
+    omissions = (*stage.document.left_out(), *stage.road.unread)
     error, vehicles, where = _Error(), dict[str, Motion](), str(path)
     end = len(play.states) - 1
     for name, box in stage.boxes.items():
@@ -98,7 +98,7 @@ def read_storyboard_drive(path: Path) -> StoryboardDrive:
             vehicles[name] = _motion(play, name, box, error, where)
     horizon = Fraction(end, TICKS)
     return StoryboardDrive(
-        Drive(vehicles), stage.road, horizon, error.place, error.speed, play.ending, unread
+        Drive(vehicles), stage.road, horizon, error.place, error.speed, play.ending, omissions
     )
 
 
@@ -116,20 +116,21 @@ def _check_smooth(play: Play, name: str, time: float, where: str) -> None:
     if not time:
         return
     before, after = play.state_before(name, time), play.state_at(name, time)
-    for speed, told in (("v_lon", ""), ("v_lat", " across")):
+    for speed, direction in (("v_lon", ""), ("v_lat", " across")):
         if abs(getattr(after, speed) - getattr(before, speed)) > _JUMP:
-            rule = f"the speed{told} jumps; in dense time it changes steadily"
+            rule = f"the speed{direction} jumps; in dense time it changes steadily"
             raise InputError(f"{where}: vehicle {name} at {time:g} s: {rule}")
 
 
-def _motion(play: Play, name: str, box: Box, error: _Error, where: str) -> Motion:
+def _motion(play: Play, name: str, box: ObjectBox, error: _Error, where: str) -> Motion:
     knots = [*_knots(play, name)]
     first = play.state_at(name, 0.0)
     ahead, left = box.centre[0] + box.length / 2, box.centre[1] + box.width / 2
-    begin = {x: _rounded(getattr(first, x)) for x in STARTING}
+    begin_s, begin_d = _rounded(first.s), _rounded(first.d)
+    v_lon, v_lat = _rounded(first.v_lon), _rounded(first.v_lat)
     along: list[Along] = []
     across: list[Across] = []
-    now_s, now_d = (begin["s"], begin["v_lon"]), (begin["d"], begin["v_lat"])
+    now_s, now_d = (begin_s, v_lon), (begin_d, v_lat)
     for low, high in pairwise(knots):
         _check_smooth(play, name, float(low), where)
         s, d = _axes(play, name, float(high))
@@ -140,15 +141,15 @@ def _motion(play: Play, name: str, box: Box, error: _Error, where: str) -> Motio
             across.append(part)
             now_d = _after(now_d, part[0], part[1], Fraction(0))
     size = _rounded(box.length), _rounded(box.width)
-    place = begin["s"] + _rounded(ahead), begin["d"] + _rounded(left)
-    made = motion_of(size, place, (begin["v_lon"], begin["v_lat"]), along, across)
+    place = begin_s + _rounded(ahead), begin_d + _rounded(left)
+    made = motion_of(size, place, (v_lon, v_lat), along, across)
     return Motion(*size, made.s, made.d, made.v_lon, made.v_lat, made.pieces, _KINDS.get(box.kind))
 
 
-def _axes(play: Play, name: str, end: float) -> tuple[Axis, Axis]:
+def _axes(play: Play, name: str, end: float) -> tuple[AxisMotion, AxisMotion]:
     """The motion in both directions up to a knot, where what begins there has no say."""
 
-    def state(time: float) -> State:
+    def state(time: float) -> ObjectState:
         return play.state_before(name, time) if time >= end else play.state_at(name, time)
 
     def along(time: float) -> Point:
@@ -166,31 +167,31 @@ def _knots(play: Play, name: str) -> Iterator[Fraction]:
     """Times at which the motion changes its form: ticks at which it is another course, and its own breaks."""
     end = Fraction(len(play.states) - 1, TICKS)
     history = play.history[name]
-    found = {Fraction(0), end}
+    knots = {Fraction(0), end}
     before: Actor | None = None
     for (tick, actor), later in zip(history, [*(x for x, _ in history[1:]), len(play.states)], strict=True):
         begin, until = Fraction(tick, TICKS), Fraction(later, TICKS)
-        exact = (_rounded(x, _TIME_DIGITS) for x in _breaks([*actor.courses.values()]))
-        found |= {x for x in exact if begin < x < until}
+        exact = (_rounded(x, _TIME_DIGITS) for x in _breaks([actor.along, actor.across]))
+        knots |= {x for x in exact if begin < x < until}
         if not _goes_on(before, actor):
-            found.add(begin)
+            knots.add(begin)
         before = actor
-    return iter(sorted(x for x in found if x <= end))
+    return iter(sorted(x for x in knots if x <= end))
 
 
 def _goes_on(before: Actor | None, now: Actor) -> bool:
-    """Whether a vehicle that looks at another one still does the same."""
+    """Return whether a vehicle that looks at another one still does the same."""
     if before is None:
         return False
-    pairs = [(before.courses[x], now.courses[x]) for x in now.courses]
-    return all(x is y or (isinstance(x, Reacting) and type(x) is type(y)) for x, y in pairs)
+    pairs = (before.along, now.along), (before.across, now.across)
+    return all(x is y or (isinstance(x, ReactiveCourse) and type(x) is type(y)) for x, y in pairs)
 
 
-def _breaks(courses: list[Course]) -> Iterator[float]:
+def _breaks(courses: list[AxisCourse]) -> Iterator[float]:
     """Times at which courses change their form."""
     for course in courses:
         match course:
-            case Capped():
+            case CappedTransition():
                 yield course.until
             case SpeedTransition() | PlaceTransition():
                 yield course.begin + course.duration
@@ -202,7 +203,7 @@ def _breaks(courses: list[Course]) -> Iterator[float]:
 
 
 def _fit_along(
-    motion: Axis, now: tuple[Fraction, Fraction], span: tuple[Fraction, Fraction], error: _Error
+    motion: AxisMotion, now: tuple[Fraction, Fraction], span: tuple[Fraction, Fraction], error: _Error
 ) -> list[Along]:
     """Pieces from a place and speed to those of the motion at the end of a span."""
     low, high = span
@@ -211,16 +212,16 @@ def _fit_along(
     faster = _rounded(target.speed) - now[1]
     jerk = 6 * (faster * length - 2 * more) / length**3
     if abs(jerk * length**3) < _SMALL:
-        found = (length, _rounded(float(faster / length)), Fraction(0))
+        whole_piece = (length, _rounded(float(faster / length)), Fraction(0))
     else:
-        found = (
+        whole_piece = (
             length,
             _rounded(float((6 * more - 2 * faster * length) / length**2), 12),
             _rounded(float(jerk), 12),
         )
-    if _is_close(motion, now, found, span) or float(length) < 2 * _SHORTEST:
-        _compare(motion, now, found, span, error)
-        return [found]
+    if _is_close(motion, now, whole_piece, span) or float(length) < 2 * _SHORTEST:
+        _compare(motion, now, whole_piece, span, error)
+        return [whole_piece]
     middle = (low + high) / 2
     first = _fit_along(motion, now, (low, middle), error)
     for piece in first:
@@ -229,28 +230,28 @@ def _fit_along(
 
 
 def _fit_across(
-    motion: Axis, now: tuple[Fraction, Fraction], span: tuple[Fraction, Fraction], error: _Error
+    motion: AxisMotion, now: tuple[Fraction, Fraction], span: tuple[Fraction, Fraction], error: _Error
 ) -> list[Across]:
-    """As ``_fit_along``, with two constant accelerations where one does not do."""
+    """Fit the motion across the road, with two constant accelerations where one does not suffice."""
     low, high = span
     length, target = high - low, motion(float(high))
     more = _rounded(target.place) - now[0] - now[1] * length
     faster = _rounded(target.speed) - now[1]
     if abs(more - faster * length / 2) < _SMALL:
-        found = [(length, _rounded(float(faster / length)))]
+        pieces = [(length, _rounded(float(faster / length)))]
     else:
         first = 4 * more / length**2 - faster / length
         both = first, 2 * faster / length - first
-        found = [(length / 2, _rounded(float(x), 12)) for x in both]
+        pieces = [(length / 2, _rounded(float(x), 12)) for x in both]
     begins, starts = [now], [low]
-    for piece in found:
+    for piece in pieces:
         begins.append(_after(begins[-1], *piece, Fraction(0)))
         starts.append(starts[-1] + piece[0])
-    parts = [((*x, Fraction(0)), y, z) for x, y, z in zip(found, begins, pairwise(starts), strict=False)]
+    parts = [((*x, Fraction(0)), y, z) for x, y, z in zip(pieces, begins, pairwise(starts), strict=False)]
     if all(_is_close(motion, y, x, z) for x, y, z in parts) or float(length) < 2 * _SHORTEST:
         for x, y, z in parts:
             _compare(motion, y, x, z, error)
-        return found
+        return pieces
     middle = (low + high) / 2
     halves = _fit_across(motion, now, (low, middle), error)
     for piece in halves:
@@ -259,27 +260,31 @@ def _fit_across(
 
 
 def _differences(
-    motion: Axis, now: tuple[Fraction, Fraction], piece: Along, span: tuple[Fraction, Fraction]
+    motion: AxisMotion, now: tuple[Fraction, Fraction], piece: Along, span: tuple[Fraction, Fraction]
 ) -> Iterator[tuple[float, float]]:
-    """Of place and speed between a piece and the motion, inside it and at its end."""
-    for k in range(1, _LOOKS + 1):
-        gone = piece[0] * k / _LOOKS
+    """Yield differences of place and speed between a piece and the motion, inside it and at its end."""
+    for k in range(1, _CHECK_POINTS + 1):
+        gone = piece[0] * k / _CHECK_POINTS
         place, speed = _after(now, gone, piece[1], piece[2])
         there = motion(float(span[0] + gone))
         yield float(place) - there.place, float(speed) - there.speed
 
 
 def _is_close(
-    motion: Axis, now: tuple[Fraction, Fraction], piece: Along, span: tuple[Fraction, Fraction]
+    motion: AxisMotion, now: tuple[Fraction, Fraction], piece: Along, span: tuple[Fraction, Fraction]
 ) -> bool:
     return all(abs(place) < CLOSE for place, _ in _differences(motion, now, piece, span))
 
 
 def _compare(
-    motion: Axis, now: tuple[Fraction, Fraction], piece: Along, span: tuple[Fraction, Fraction], error: _Error
+    motion: AxisMotion,
+    now: tuple[Fraction, Fraction],
+    piece: Along,
+    span: tuple[Fraction, Fraction],
+    error: _Error,
 ) -> None:
     for place, speed in _differences(motion, now, piece, span):
-        error.see(place, speed)
+        error.update(place, speed)
 
 
 def _after(

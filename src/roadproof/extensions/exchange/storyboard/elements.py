@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from roadproof.extensions.exchange.storyboard.conditions import ConditionReader, Situation, Trigger
-from roadproof.runtime.xml_reader import Element
+from roadproof.extensions.maps.xml_reader import Element
 
 KINDS = {
     "Story": "story",
@@ -36,7 +36,7 @@ class StoryElement:
     selects: bool
     start: Trigger
     stop: Trigger
-    children: list["StoryElement"]
+    children: "list[StoryElement]"
     left: int
     state: str = "standby"
     changes: dict[int, set[str]] = field(default_factory=dict)
@@ -64,16 +64,16 @@ class StoryElement:
             else:
                 child.finish(how, tick)
 
-    def seen(self, tick: int) -> frozenset[str]:
+    def visible_states(self, tick: int) -> frozenset[str]:
         """Its state, and the transitions of the tick before."""
         return frozenset({f"{self.state}State", *self.changes.get(tick - 1, ())})
 
     @property
     def has_started(self) -> bool:
-        """Whether it has ever run."""
+        """Return whether it has ever run."""
         return any("startTransition" in x for x in self.changes.values())
 
-    def walk(self) -> Iterator["StoryElement"]:
+    def walk(self) -> "Iterator[StoryElement]":
         yield self
         for child in self.children:
             yield from child.walk()
@@ -87,8 +87,8 @@ def read_element(
     if node.tag == "ManeuverGroup":
         selects = document.flag(document.child(node, "Actors"), "selectTriggeringEntities")
         if document.number(node, "maximumExecutionCount", 1.0) != 1:
-            told = f"maximumExecutionCount={node.get('maximumExecutionCount')}: 1 is supported"
-            raise document.error(node, told)
+            problem = f"maximumExecutionCount={node.get('maximumExecutionCount')}: 1 is supported"
+            raise document.error(node, problem)
         actors = tuple(document.text(x, "entityRef") for x in node.findall("Actors/EntityRef"))
         for name in actors:
             if name not in reader.boxes:
@@ -106,10 +106,10 @@ def read_element(
 
 
 def _trigger(node: Element, tag: str) -> Element:
-    found = node.find(tag)
-    return Element(tag) if found is None else found
+    trigger = node.find(tag)
+    return Element(tag) if trigger is None else trigger
 
 
-def starts(element: StoryElement, now: Situation) -> bool:
-    """Whether an element without a start trigger, or one whose trigger fires, starts now."""
+def starts_now(element: StoryElement, now: Situation) -> bool:
+    """Return whether an element without a start trigger, or one whose trigger fires, starts now."""
     return element.start.fires(now) if element.start.can_fire else True

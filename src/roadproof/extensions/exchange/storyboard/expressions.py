@@ -62,13 +62,13 @@ def _evaluate(node: ast.expr) -> float:
     raise ValueError(f"{ast.unparse(node)[:80]} is not supported in an expression")
 
 
-def replaced(text: str, values: Mapping[str, str]) -> str:
+def replace_parameters(text: str, values: Mapping[str, str]) -> str:
     """``text`` with parameters and expressions replaced. Raises ``ValueError``."""
 
-    def value_of(found: re.Match[str]) -> str:
-        if found[1] not in values:
-            raise ValueError(f"there is no parameter {found[1]}")
-        return values[found[1]]
+    def value_of(match: re.Match[str]) -> str:
+        if match[1] not in values:
+            raise ValueError(f"there is no parameter {match[1]}")
+        return values[match[1]]
 
     if text.startswith("${") and text.endswith("}"):
         return repr(expression_value(_NAME.sub(value_of, text[2:-1])))

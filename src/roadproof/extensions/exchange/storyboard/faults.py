@@ -3,29 +3,29 @@
 import itertools
 from collections.abc import Iterator, Mapping
 
-from roadproof.extensions.exchange.storyboard.box import Box
+from roadproof.extensions.exchange.storyboard.box import ObjectBox
 from roadproof.extensions.exchange.storyboard.conditions import TICKS
-from roadproof.extensions.exchange.storyboard.positions import State
-from roadproof.extensions.exchange.storyboard.run import Play
+from roadproof.extensions.exchange.storyboard.play import Play
+from roadproof.extensions.exchange.storyboard.positions import ObjectState
 
 _STEP = 0.1
 """m/s: a larger change of a speed within a tick, beside that by the acceleration, is a step."""
 _MORE = 1e-6
 
 
-def faults_of(play: Play, boxes: Mapping[str, Box]) -> tuple[str, ...]:
+def faults_of(play: Play, boxes: Mapping[str, ObjectBox]) -> tuple[str, ...]:
     """Return the first fault of each kind of each motor vehicle, in words."""
-    found: list[str] = []
+    faults: list[str] = []
     for name, box in boxes.items():
         if box.recorded:
             states = [x.get(name) for x in play.states]
-            found += [f"vehicle {name} {x}" for x in (*_steps(states), *_excesses(states, box.limits))]
-    return tuple(found)
+            faults += [f"vehicle {name} {x}" for x in (*_steps(states), *_excesses(states, box.limits))]
+    return tuple(faults)
 
 
-def _steps(states: list[State | None]) -> Iterator[str]:
+def _steps(states: list[ObjectState | None]) -> Iterator[str]:
     """A line for a step of the speed along the road, and one for a step across it."""
-    for speed, rate, told in (("v_lon", "a_lon", ""), ("v_lat", "a_lat", " across the road")):
+    for speed, rate, direction in (("v_lon", "a_lon", ""), ("v_lat", "a_lat", " across the road")):
         for tick, (before, after) in enumerate(itertools.pairwise(states), start=1):
             if before is None or after is None or before.forward != after.forward:
                 continue
@@ -33,11 +33,11 @@ def _steps(states: list[State | None]) -> Iterator[str]:
             most = max(abs(getattr(x, rate)) for x in (before, after)) / TICKS
             if abs(high - low) > most + _STEP:
                 change = f"from {low:.4g} to {high:.4g} m/s"
-                yield f"changes its speed{told} {change} in no time at {tick / TICKS:g} s"
+                yield f"changes its speed{direction} {change} in no time at {tick / TICKS:g} s"
                 break
 
 
-def _excesses(states: list[State | None], limits: tuple[float, float, float]) -> Iterator[str]:
+def _excesses(states: list[ObjectState | None], limits: tuple[float, float, float]) -> Iterator[str]:
     """A line for each limit of the Performance that the motion exceeds."""
     fastest, quickest, hardest = limits
     for what, unit, most, value in (
@@ -52,6 +52,6 @@ def _excesses(states: list[State | None], limits: tuple[float, float, float]) ->
             yield f"exceeds {limit} from {begin:g} s on: {worst:.4g} {unit}"
 
 
-def _forwards(state: State) -> float:
+def _forwards(state: ObjectState) -> float:
     """The acceleration in the direction in which a vehicle moves (m/s²)."""
     return state.a_lon if state.v_lon >= 0 else -state.a_lon

@@ -1,7 +1,7 @@
 """Global actions of a storyboard, and the values of parameters and variables that they change."""
 
 from roadproof.extensions.exchange.storyboard.document import Document
-from roadproof.runtime.xml_reader import Element
+from roadproof.extensions.maps.xml_reader import Element
 
 _IGNORED = frozenset(("EnvironmentAction", "InfrastructureAction"))
 """Actions that have no effect on the motion of a vehicle that does as the storyboard says."""

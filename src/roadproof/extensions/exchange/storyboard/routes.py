@@ -12,11 +12,11 @@ from pathlib import Path
 
 from roadproof.errors import InputError
 from roadproof.extensions.exchange.storyboard.document import Document
-from roadproof.extensions.exchange.storyboard.positions import distance, is_turned, positions_on
-from roadproof.extensions.maps.carriageway import DirectedRoad, driven
-from roadproof.extensions.maps.opendrive import Link, MapRoad, read_map
+from roadproof.extensions.exchange.storyboard.positions import distance, is_turned_back, positions_on
+from roadproof.extensions.maps.carriageway import DirectedRoad, driven_lanes
+from roadproof.extensions.maps.opendrive import MapRoad, RoadLink, read_map
 from roadproof.extensions.maps.selection import LANELETS, STRETCH, directed, read_selection
-from roadproof.runtime.xml_reader import Element
+from roadproof.extensions.maps.xml_reader import Element
 from roadproof.world.models import load_road
 
 _MOST_STEPS = 5000
@@ -36,28 +36,28 @@ def stretch_of(document: Document, path: Path) -> str:
     if not places:
         return str(path)
     roads = {x.id: x for x in read_map(path).roads}
-    wanted: dict[str, Element] = {}
+    start_places: dict[str, Element] = {}
     for place in places:
         name = _road_of(document, place, roads)
         if name is not None:
-            wanted.setdefault(name, place)
-    if not wanted:
+            start_places.setdefault(name, place)
+    if not start_places:
         return str(path)
-    first = next(iter(wanted.values()))
-    if len(wanted) == 1:
-        (name,) = wanted
+    first = next(iter(start_places.values()))
+    if len(start_places) == 1:
+        (name,) = start_places
         return _single(document, path, name, first) if name in roads else f"{path}#road={name}"
-    return _route(document, path, roads, wanted)
+    return _route(document, path, roads, start_places)
 
 
-def longer(stretch: str) -> str | None:
+def extended_stretch(stretch: str) -> str | None:
     """A road or route with the road that goes on from its end, None where there is none."""
     path, selection = read_selection(stretch)
     if path.suffix in LANELETS or selection.span != (None, None) or not selection.roads:
         return None
-    found = read_map(path)
-    last = directed(path, found, selection)[-1]
-    roads = {x.id: x for x in found.roads if x.id not in selection.roads}
+    road_map = read_map(path)
+    last = directed(path, road_map, selection)[-1]
+    roads = {x.id: x for x in road_map.roads if x.id not in selection.roads}
     ahead = min(_next(roads, last, []), key=_turn, default=None)
     return None if ahead is None else f"{path}#route={'+'.join((*selection.roads, ahead.road.id))}"
 
@@ -71,13 +71,13 @@ def _turn(way: DirectedRoad) -> float:
 def _begins(document: Document) -> Iterator[Element]:
     """Elements inside Position at which vehicles begin or their routes lead, else any lane."""
     init = document.root.find("Storyboard/Init")
-    found = []
+    places = []
     others = {x.get("name") for x in document.root.iter("ScenarioObject") if x.find("Vehicle") is None}
     for private in () if init is None else init.iter("Private"):
         if private.get("entityRef") in others:
             continue
-        found += [x[0] for node in private.iter() for x in node.findall("Position") if len(x)]
-    named = [x for x in found if x.tag in ("LanePosition", "RoadPosition", "TrackPosition", "WorldPosition")]
+        places += [x[0] for node in private.iter() for x in node.findall("Position") if len(x)]
+    named = [x for x in places if x.tag in ("LanePosition", "RoadPosition", "TrackPosition", "WorldPosition")]
     yield from named or document.root.iter("LanePosition")
 
 
@@ -95,7 +95,7 @@ def _road_of(document: Document, place: Element, roads: Mapping[str, MapRoad]) -
 def _single(document: Document, path: Path, name: str, place: Element) -> str:
     """A road in the direction of the vehicle at ``place``."""
     if place.tag == "LanePosition":
-        left = (document.number(place, "laneId") > 0) != is_turned(document, place)
+        left = (document.number(place, "laneId") > 0) != is_turned_back(document, place)
         return f"{path}#road={name},lanes={'left' if left else 'right'}"
     sides = (f"{path}#road={name},lanes={side}" for side in ("right", "left"))
     return _forward(document, place, sides) or f"{path}#road={name}"
@@ -114,28 +114,28 @@ def _forward(document: Document, place: Element, stretches: Iterable[str]) -> st
 
 
 def _route(
-    document: Document, path: Path, roads: Mapping[str, MapRoad], wanted: Mapping[str, Element]
+    document: Document, path: Path, roads: Mapping[str, MapRoad], start_places: Mapping[str, Element]
 ) -> str:
     """The roads in the order in which they are driven. Raises ``InputError``."""
-    place = next(iter(wanted.values()))
-    routes = (f"{path}#route={'+'.join(names)}" for names in _chains(roads, [*wanted]))
+    place = next(iter(start_places.values()))
+    routes = (f"{path}#route={'+'.join(names)}" for names in _chains(roads, [*start_places]))
     if (route := _forward(document, place, routes)) is not None:
         return route
-    shown = ", ".join(sorted(wanted))
+    shown = ", ".join(sorted(start_places))
     rule = f"name the route as a parameter {STRETCH} with a value such as route=1+2"
     raise document.error(place, f"positions on several roads ({shown}) that are not one route; {rule}")
 
 
-def _chains(roads: Mapping[str, MapRoad], wanted: list[str]) -> Iterator[tuple[str, ...]]:
+def _chains(roads: Mapping[str, MapRoad], required: list[str]) -> Iterator[tuple[str, ...]]:
     """Routes over all wanted roads that begin on one of them, the shortest ones first."""
-    starts = [DirectedRoad(roads[x], y) for x in wanted if x in roads for y in (True, False)]
+    starts = [DirectedRoad(roads[x], y) for x in required if x in roads for y in (True, False)]
     queue: deque[tuple[DirectedRoad, ...]] = deque((x,) for x in starts)
     for _ in range(_MOST_STEPS):
         if not queue:
             return
         chain = queue.popleft()
         names = tuple(x.road.id for x in chain)
-        if {*wanted} <= {*names}:
+        if {*required} <= {*names}:
             yield names
         elif len(chain) < _LONGEST:
             queue.extend((*chain, x) for x in _next(roads, chain[-1], starts) if x.road.id not in names)
@@ -159,10 +159,12 @@ def _next(
     for road in roads.values() if link.kind == "junction" else ():
         if road.junction == link.id:
             for way, forward in ((road.predecessor, True), (road.successor, False)):
-                found = DirectedRoad(road, forward)
-                if _meets(way, last.road.id, here) and any(driven(x, found.side) for x in road.sections):
-                    yield found
+                directed_road = DirectedRoad(road, forward)
+                if _meets(way, last.road.id, here) and any(
+                    driven_lanes(x, directed_road.side) for x in road.sections
+                ):
+                    yield directed_road
 
 
-def _meets(link: Link | None, name: str, contact: str) -> bool:
+def _meets(link: RoadLink | None, name: str, contact: str) -> bool:
     return link is not None and link.kind == "road" and link.id == name and link.contact == contact

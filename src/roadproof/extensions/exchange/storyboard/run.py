@@ -7,80 +7,43 @@ storyboard elements are seen by conditions one tick later. An object without pla
 conditions on it do not hold.
 """
 
-from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
-from roadproof.extensions.exchange.storyboard.actions import ActionReader, Actor, Scene, turned
-from roadproof.extensions.exchange.storyboard.box import Box
+from roadproof.extensions.exchange.storyboard.actions import (
+    ActionReader,
+    ActionScene,
+    Actor,
+    in_opposite_direction,
+)
+from roadproof.extensions.exchange.storyboard.box import ObjectBox
 from roadproof.extensions.exchange.storyboard.conditions import TICKS, ConditionReader, Situation, Trigger
 from roadproof.extensions.exchange.storyboard.control import Control
-from roadproof.extensions.exchange.storyboard.controllers import Axis, Reacting
-from roadproof.extensions.exchange.storyboard.courses import Course, OnPath, Point, Steady
+from roadproof.extensions.exchange.storyboard.controllers import AXES, Axis, ReactiveCourse
+from roadproof.extensions.exchange.storyboard.courses import AxisCourse, ConstantSpeed, PathCourse
 from roadproof.extensions.exchange.storyboard.document import Document
-from roadproof.extensions.exchange.storyboard.elements import StoryElement, read_element, starts
+from roadproof.extensions.exchange.storyboard.elements import StoryElement, read_element, starts_now
 from roadproof.extensions.exchange.storyboard.global_actions import act_globally, initial_values
-from roadproof.extensions.exchange.storyboard.positions import State, positions_on
-from roadproof.runtime.records import dataclass
-from roadproof.runtime.xml_reader import Element
+from roadproof.extensions.exchange.storyboard.play import ANYWHERE, Play, place_along, state_of
+from roadproof.extensions.exchange.storyboard.positions import ObjectState, positions_on
+from roadproof.extensions.maps.xml_reader import Element
 from roadproof.world.road import Road
 
-LONGEST, REST, JUMP = 120, 5, 0.5
+LONGEST, REST = 120, 5
 _STANDS = 1e-6
 """m/s"""
 _FOLLOW = "RoutingAction/FollowTrajectoryAction"
-_SOON = 1e-6
-"""Ticks"""
-_ANYWHERE = Point(0.0, 0.0)
 
 
-@dataclass(frozen=True)
-class Play:
-    """States of the objects' reference points at each tick from 0 on, and why it ended.
-
-    ``at_end``: as a vehicle came to the end of the road. ``history``: the objects with their courses, each
-    from a tick on. ``controlled``: those that controllers move, and from when on. ``idle``: events that never
-    start.
-    """
-
-    states: tuple[Mapping[str, State], ...]
-    ending: str
-    history: Mapping[str, Sequence[tuple[int, Actor]]]
-    at_end: bool = False
-    controlled: Mapping[str, str] = field(default_factory=dict)
-    idle: tuple[str, ...] = ()
-
-    def state_at(self, name: str, time: float) -> State:
-        """Of an object that is on the road, at any time (s)."""
-        return self._state(name, time, bisect_right(self.history[name], time * TICKS + _SOON, key=_tick))
-
-    def state_before(self, name: str, time: float) -> State:
-        """As ``state_at``, without what begins at the time."""
-        return self._state(name, time, bisect_left(self.history[name], time * TICKS - _SOON, key=_tick))
-
-    def _state(self, name: str, time: float, later: int) -> State:
-        _, actor = self.history[name][max(later - 1, 0)]
-        return _state(actor, time)
-
-    def jumps(self, name: str, tick: int) -> bool:
-        """Whether an object is put somewhere else at a tick: more than JUMP m from where its speed leads."""
-        if tick == 0 or name not in self.states[tick - 1]:
-            return False
-        one, other = self.states[tick - 1][name], self.states[tick][name]
-        speeds = (max(abs(getattr(x, y)) for x in (one, other)) / TICKS for y in ("v_lon", "v_lat"))
-        ways = abs(other.s - one.s), abs(other.d - one.d)
-        return any(way > speed + JUMP for way, speed in zip(ways, speeds, strict=True))
-
-
-def run_storyboard(document: Document, boxes: Mapping[str, Box], road: Road) -> Play:
+def run_storyboard(document: Document, boxes: Mapping[str, ObjectBox], road: Road) -> Play:
     """The motions that a storyboard describes. Raises ``InputError`` for what is not supported."""
     runner = _Runner(document, boxes, road)
     play = runner.run()
-    return replace(play, controlled=runner.control.told, idle=tuple(runner.leave_idle()))
+    return replace(play, controlled=runner.control.controlled, idle=tuple(runner.leave_idle()))
 
 
 class _Runner:
-    def __init__(self, document: Document, boxes: Mapping[str, Box], road: Road) -> None:
+    def __init__(self, document: Document, boxes: Mapping[str, ObjectBox], road: Road) -> None:
         self.document, self.boxes = document, boxes
         positions = positions_on(document, road)
         self.actions = ActionReader(document, boxes, positions)
@@ -104,30 +67,30 @@ class _Runner:
 
     def run(self) -> Play:
         self._place()
-        found: list[Mapping[str, State]] = []
+        history: list[Mapping[str, ObjectState]] = []
         complete: int | None = None
         for tick in range(LONGEST * TICKS + 1):
             self.tick = tick
             states = self._states()
-            self._count(found[-1] if found else states, states)
+            self._count(history[-1] if history else states, states)
             if ahead := [x for x, state in states.items() if self._is_beyond(x, state)]:
                 return Play(
-                    tuple(found), f"{ahead[0]} comes to the end of the road", self.history, at_end=True
+                    tuple(history), f"{ahead[0]} comes to the end of the road", self.history, at_end=True
                 )
-            found.append(states)
+            history.append(states)
             now = self._situation(states)
             if self.stop.fires(now):
-                return Play(tuple(found), "its StopTrigger fires", self.history)
+                return Play(tuple(history), "its StopTrigger fires", self.history)
             self._steer(states)
             for story in self.stories:
                 self._advance(story, now)
-            found[-1] = self._states()  # steps of speed
+            history[-1] = self._states()  # steps of speed
             self._remember()
             if complete is None and all(x.state == "complete" for x in self.stories):
                 complete = tick
             if complete is not None and not self.stop.can_fire and tick >= complete + REST * TICKS:
-                return Play(tuple(found), f"all is complete for {REST} s", self.history)
-        return Play(tuple(found), f"it does not end by itself within {LONGEST} s", self.history)
+                return Play(tuple(history), f"all is complete for {REST} s", self.history)
+        return Play(tuple(history), f"it does not end by itself within {LONGEST} s", self.history)
 
     def leave_idle(self) -> Iterator[str]:
         """Pass over elements that never started, which have no effect, and return the names of events."""
@@ -143,29 +106,29 @@ class _Runner:
             if not known or known[-1][1] is not actor:
                 known.append((self.tick, actor))
 
-    def _is_beyond(self, name: str, state: State) -> bool:
-        """Whether a vehicle that is recorded comes to the end of the road."""
+    def _is_beyond(self, name: str, state: ObjectState) -> bool:
+        """Return whether a vehicle that is recorded comes to the end of the road."""
         box = self.boxes[name]
         return box.recorded and state.forward and state.s + box.centre[0] > self.end
 
-    def _states(self) -> dict[str, State]:
+    def _states(self) -> dict[str, ObjectState]:
         time = self.tick / TICKS
-        return {name: _state(actor, time) for name, actor in self.actors.items()}
+        return {name: state_of(actor, time) for name, actor in self.actors.items()}
 
-    def _steer(self, states: Mapping[str, State]) -> None:
-        """Let vehicles react to others."""
+    def _steer(self, states: Mapping[str, ObjectState]) -> None:
+        """Update the vehicles that react to others."""
         for name, actor in self.actors.items():
-            seen = states if actor.forward else turned(states)
-            for axis, course in actor.courses.items():
-                if isinstance(course, Reacting) and not course.ended(0.0, _ANYWHERE):
+            seen = states if actor.forward else in_opposite_direction(states)
+            for axis in AXES:
+                course = actor.course(axis)
+                if isinstance(course, ReactiveCourse) and not course.ended(0.0, ANYWHERE):
                     self.control.check_course(name, course)
                     self._set(name, {axis: course.next(self.tick / TICKS, seen)})
 
-    def _set(self, name: str, courses: Mapping[Axis, Course]) -> None:
-        actor = self.actors[name]
-        self.actors[name] = Actor(name, {**actor.courses, **courses}, actor.forward)
+    def _set(self, name: str, courses: Mapping[Axis, AxisCourse]) -> None:
+        self.actors[name] = self.actors[name].with_courses(courses)
 
-    def _count(self, before: Mapping[str, State], states: Mapping[str, State]) -> None:
+    def _count(self, before: Mapping[str, ObjectState], states: Mapping[str, ObjectState]) -> None:
         """Add up distances and times at rest."""
         for name, state in states.items():
             gone = abs(state.s - before[name].s) if name in before else 0.0
@@ -175,16 +138,16 @@ class _Runner:
             else:
                 self.still.setdefault(name, self.tick)
 
-    def _situation(self, states: Mapping[str, State]) -> Situation:
+    def _situation(self, states: Mapping[str, ObjectState]) -> Situation:
         elements: dict[tuple[str, str], frozenset[str]] = {}
         for x in (y for story in self.stories for y in story.walk()):
-            elements[x.key] = elements.get(x.key, frozenset()) | x.seen(self.tick)
+            elements[x.key] = elements.get(x.key, frozenset()) | x.visible_states(self.tick)
         return Situation(
-            self.tick, states, self.travelled, self.still, elements, self.values, self.control.told
+            self.tick, states, self.travelled, self.still, elements, self.values, self.control.controlled
         )
 
     def _place(self) -> None:
-        """Put the vehicles where Init says, and begin its actions."""
+        """Place the vehicles as Init says, and begin its actions."""
         actions = (
             []
             if self.init is None
@@ -197,27 +160,29 @@ class _Runner:
         for name, action in actions:
             if name not in self.boxes:
                 raise self.document.error(action, f"there is no ScenarioObject {name}")
-        placing = {name for name, action in actions if _places(action) is not None}
+        placing = {name for name, action in actions if _placing_element(action) is not None}
         for first in (True, False):
-            self._begin_all([x for x in actions if x[0] in placing and (_places(x[1]) is not None) == first])
+            self._begin_all(
+                [x for x in actions if x[0] in placing and (_placing_element(x[1]) is not None) == first]
+            )
         for action in () if self.init is None else self.init.findall("GlobalAction"):
             self._act_globally(action)
         self._hand_over()
 
     def _hand_over(self) -> None:
-        """Let go of the vehicles that controllers move from now on."""
-        for name in self.control.told:
+        """Release the vehicles that controllers move from now on."""
+        for name in self.control.controlled:
             self.actors.pop(name, None)
 
     def _begin_all(self, actions: list[tuple[str, Element]]) -> None:
         """Begin actions of Init, those that refer to another vehicle after that one has its place."""
         while actions:
-            late = [x for x in actions if not self._begins(*x)]
+            late = [x for x in actions if not self._try_begin(*x)]
             if len(late) == len(actions):
                 raise self.document.error(late[0][1], "it refers to a vehicle that is not placed")
             actions = late
 
-    def _begins(self, name: str, action: Element) -> bool:
+    def _try_begin(self, name: str, action: Element) -> bool:
         try:
             self._act(name, action)
         except KeyError:
@@ -225,7 +190,7 @@ class _Runner:
         return True
 
     def _act(self, name: str, action: Element) -> tuple[Axis, ...]:
-        """Let a vehicle begin a PrivateAction; the axes along which this moves it. Raises ``KeyError``."""
+        """Begin a PrivateAction; return the axes along which it moves the vehicle. Raises ``KeyError``."""
         time, states = self.tick / TICKS, self._states()
         if self.control.takes(name, action, time):
             return ()
@@ -235,18 +200,26 @@ class _Runner:
             return ()
         if name not in self.actors:
             follow = self.document.child(action, _FOLLOW)
-            self.actors[name] = self.actions.placed(follow, name, Scene(time, states))
+            self.actors[name] = self.actions.place_actor(follow, name, ActionScene(time, states))
             states = self._states()
         actor = self.actors[name]
-        reader, seen = (self.actions, states) if actor.forward else (self.actions.turned(), turned(states))
-        courses = reader.courses(action, actor, Scene(time, seen))
+        reader, seen = (
+            (self.actions, states)
+            if actor.forward
+            else (self.actions.in_opposite_direction(), in_opposite_direction(states))
+        )
+        courses = reader.courses(action, actor, ActionScene(time, seen))
         self._set(name, courses)
-        stays = isinstance(actor.courses["across"], OnPath) and action.find(_FOLLOW) is None
-        return tuple(x for x in courses if not (stays and isinstance(courses[x], OnPath) and x == "across"))
+        stays = isinstance(actor.across, PathCourse) and action.find(_FOLLOW) is None
+        return tuple(
+            x for x in courses if not (stays and isinstance(courses[x], PathCourse) and x == "across")
+        )
 
     def _put(self, name: str, position: Element) -> None:
-        """Put a vehicle somewhere."""
-        self.actors[name] = self.actions.placed(position, name, Scene(self.tick / TICKS, self._states()))
+        """Move a vehicle to a position."""
+        self.actors[name] = self.actions.place_actor(
+            position, name, ActionScene(self.tick / TICKS, self._states())
+        )
 
     def _act_globally(self, action: Element) -> None:
         """Begin a GlobalAction. Raises ``InputError`` for what is not supported."""
@@ -272,7 +245,7 @@ class _Runner:
             for action in element.children:
                 if action.state == "running" and self._done(action):
                     action.finish("endTransition", self.tick)
-        if element.state == "standby" and element.node.tag != "Event" and starts(element, now):
+        if element.state == "standby" and element.node.tag != "Event" and starts_now(element, now):
             element.change("running", "startTransition", self.tick)
         if element.state != "running":
             return
@@ -286,7 +259,7 @@ class _Runner:
     def _start_events(self, maneuver: StoryElement, now: Situation) -> None:
         """Start the events of a maneuver whose triggers fire, by their priorities."""
         for event in maneuver.children:
-            if event.state != "standby" or event.left < 1 or not starts(event, now):
+            if event.state != "standby" or event.left < 1 or not starts_now(event, now):
                 continue
             others = [x for x in maneuver.children if x is not event and x.state == "running"]
             priority = event.node.get("priority", "parallel")
@@ -305,11 +278,11 @@ class _Runner:
 
     def _selected(self, event: StoryElement) -> tuple[str, ...]:
         """The entities that trigger an event, or its act where the event has no trigger on entities."""
-        found = event.start.entities or (self.act.start.entities if self.act else frozenset())
-        if not found:
+        entities = event.start.entities or (self.act.start.entities if self.act else frozenset())
+        if not entities:
             rule = "selectTriggeringEntities=true needs a StartTrigger with a ByEntityCondition"
             raise self.document.error(event.node, rule)
-        return tuple(sorted(found))
+        return tuple(sorted(entities))
 
     def _begin(self, action: StoryElement, selected: tuple[str, ...]) -> None:
         """Begin an action of an event for all its actors, and for the entities that were selected."""
@@ -325,7 +298,9 @@ class _Runner:
             raise self.document.error(kind, "no entity is an actor; name one in Actors")
         self.control.check_action(kind)
         for name in actors:
-            if name in self.control.told or (name not in self.actors and _places(kind) is None):
+            if name in self.control.controlled or (
+                name not in self.actors and _placing_element(kind) is None
+            ):
                 continue
             try:
                 axes = self._act(name, kind)
@@ -335,46 +310,37 @@ class _Runner:
                 self.owners[name, axis] = action
         self._hand_over()
 
-    def _courses(self, action: StoryElement) -> Iterator[tuple[str, Axis, Course]]:
+    def _courses(self, action: StoryElement) -> Iterator[tuple[str, Axis, AxisCourse]]:
         """The courses of an action that no other one has ended."""
         for (name, axis), owner in self.owners.items():
             if owner is action and name in self.actors:
-                yield name, axis, self.actors[name].courses[axis]
+                yield name, axis, self.actors[name].course(axis)
 
     def _done(self, action: StoryElement) -> bool:
         time = self.tick / TICKS
-        return all(x.ended(time, _along(self.actors[name], time)) for name, _, x in self._courses(action))
+        return all(
+            x.ended(time, place_along(self.actors[name], time)) for name, _, x in self._courses(action)
+        )
 
     def _finish(self, element: StoryElement, how: str) -> None:
         """End an element; vehicles that its actions move keep their speed, and their d."""
         states = self._states()
         for action in (x for x in element.walk() if x.node.tag == "Action" and x.state == "running"):
             for name, axis, _ in [*self._courses(action)]:
-                x = states[name] if self.actors[name].forward else states[name].turned()
+                x = states[name] if self.actors[name].forward else states[name].in_opposite_direction()
                 time = self.tick / TICKS
-                self._set(name, {axis: Steady(time, x.s, x.v_lon) if axis == "along" else Steady(time, x.d)})
+                self._set(
+                    name,
+                    {
+                        axis: ConstantSpeed(time, x.s, x.v_lon)
+                        if axis == "along"
+                        else ConstantSpeed(time, x.d)
+                    },
+                )
         element.finish(how, self.tick)
 
 
-def _places(action: Element) -> Element | None:
+def _placing_element(action: Element) -> Element | None:
     """The element of a PrivateAction that puts a vehicle without place on the road."""
     place = action.find("TeleportAction")
     return action.find(_FOLLOW) if place is None else place
-
-
-def _tick(known: tuple[int, Actor]) -> int:
-    return known[0]
-
-
-def _along(actor: Actor, time: float) -> Point:
-    return actor.courses["along"].at(time, _ANYWHERE)
-
-
-def _state(actor: Actor, time: float) -> State:
-    """In coordinates of the road."""
-    along = _along(actor, time)
-    across = actor.courses["across"].at(time, along)
-    state = State(
-        *(along.place, across.place, along.speed, across.speed, along.acceleration, across.acceleration)
-    )
-    return state if actor.forward else state.turned()

@@ -1,4 +1,4 @@
-"""What a storyboard is played on and by: the road, and the vehicles and other objects with their boxes."""
+"""The stage of a storyboard: the road, and the vehicles and other objects with their boxes."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -6,15 +6,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.extensions.exchange.storyboard.box import Box
+from roadproof.extensions.exchange.storyboard.box import ObjectBox
 from roadproof.extensions.exchange.storyboard.document import Document, open_document
-from roadproof.extensions.exchange.storyboard.routes import longer, stretch_of
-from roadproof.extensions.exchange.storyboard.run import Play, run_storyboard
+from roadproof.extensions.exchange.storyboard.play import Play
+from roadproof.extensions.exchange.storyboard.routes import extended_stretch, stretch_of
+from roadproof.extensions.exchange.storyboard.run import run_storyboard
+from roadproof.extensions.maps.xml_reader import Element, number_in
 from roadproof.runtime.records import dataclass
-from roadproof.runtime.xml_reader import Element, number_in
 from roadproof.world.models import load_road
+from roadproof.world.not_read import LEFT_OUT, not_read_note
 from roadproof.world.road import Road
-from roadproof.world.unread import LEFT_OUT, unread_note
 
 _KINDS = {
     "car": "Car",
@@ -30,17 +31,17 @@ _UNRECORDED = ("bicycle", "pedestrian", "wheelchair")
 
 
 @dataclass(frozen=True)
-class Stage:
+class StoryboardStage:
     """A document, its objects by name, and the road, which is a ``stretch`` of the map at ``road_path``."""
 
     document: Document
-    boxes: Mapping[str, Box]
+    boxes: Mapping[str, ObjectBox]
     road: Road
     road_path: Path
     stretch: str
 
 
-def open_stage(path: Path) -> Stage:
+def open_stage(path: Path) -> StoryboardStage:
     """The stage of a file. Raises ``InputError``."""
     document = open_document(path)
     road_path = map_of(document)
@@ -48,13 +49,13 @@ def open_stage(path: Path) -> Stage:
     if not any(x.recorded for x in boxes.values()):
         raise InputError(f"{path}: no ScenarioObject is a motor vehicle")
     stretch = stretch_of(document, road_path)
-    return Stage(document, boxes, load_road(stretch), road_path, stretch)
+    return StoryboardStage(document, boxes, load_road(stretch), road_path, stretch)
 
 
-def played(stage: Stage) -> tuple[Stage, Play]:
+def run_stage(stage: StoryboardStage) -> tuple[StoryboardStage, Play]:
     """The play, on a longer road where a vehicle comes to its end. Raises ``InputError``."""
     play = run_storyboard(stage.document, stage.boxes, stage.road)
-    while play.at_end and (more := longer(stage.stretch)) is not None:
+    while play.at_end and (more := extended_stretch(stage.stretch)) is not None:
         try:
             road = load_road(more)
         except InputError:
@@ -64,25 +65,25 @@ def played(stage: Stage) -> tuple[Stage, Play]:
     return stage, play
 
 
-def unread_of(stage: Stage) -> tuple[str, ...]:
+def omission_notes(stage: StoryboardStage) -> tuple[str, ...]:
     """Notes on parts of a file and of its map that were not read and may have an effect."""
     parts = stage.document.left_out()
-    told = (f"{LEFT_OUT}, as it is not supported: {'; '.join(parts)}",) if parts else ()
-    return (*told, *unread_note(stage.road_path, stage.road.unread, strict=False))
+    notes = (f"{LEFT_OUT}, as it is not supported: {'; '.join(parts)}",) if parts else ()
+    return (*notes, *not_read_note(stage.road_path, stage.road.unread, strict=False))
 
 
 def map_of(document: Document) -> Path:
     """The map that the file names, or that of the name beside it, as CARLA names maps."""
     path, node = document.path, document.root.find("RoadNetwork/LogicFile")
-    named = text_of(path, node, "filepath", "a LogicFile")
-    found = document.folder / named
-    if "\\" in named and not found.exists():  # written on Windows
-        found = document.folder / named.replace("\\", "/")
-    if not found.suffix:
-        found = found.with_suffix(".xodr")
-    if found.suffix != ".xodr":
-        raise InputError(f"{path}: LogicFile filepath={found.name}: a road in OpenDRIVE (.xodr) is needed")
-    return found
+    file_name = text_of(path, node, "filepath", "a LogicFile")
+    map_path = document.folder / file_name
+    if "\\" in file_name and not map_path.exists():  # written on Windows
+        map_path = document.folder / file_name.replace("\\", "/")
+    if not map_path.suffix:
+        map_path = map_path.with_suffix(".xodr")
+    if map_path.suffix != ".xodr":
+        raise InputError(f"{path}: LogicFile filepath={map_path.name}: a road in OpenDRIVE (.xodr) is needed")
+    return map_path
 
 
 def text_of(path: Path, node: Element | None, attribute: str, what: str) -> str:
@@ -96,7 +97,7 @@ def number_of(path: Path, node: Element | None, attribute: str, what: str) -> fl
     return number_in(path, text_of(path, node, attribute, what), f"{attribute} of {what}")
 
 
-def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
+def _boxes(path: Path, root: Element) -> Iterator[tuple[str, ObjectBox]]:
     """The motor vehicles by name."""
     seen: set[str] = set()
     for node in root.findall("Entities/ScenarioObject"):
@@ -104,48 +105,53 @@ def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
         if name in seen:
             raise InputError(f"{path}: two ScenarioObjects are called {name}")
         seen.add(name)
-        told = f"ScenarioObject {name}"
+        where = f"ScenarioObject {name}"
         vehicle = node.find("Vehicle")
         other = next((x for x in node if x.tag in _OTHERS), None)
         if vehicle is None and other is not None:
-            yield name, _other_box(path, other, told)
+            yield name, _other_box(path, other, where)
             continue
         if vehicle is None:
-            raise InputError(f"{path}: {told} is no Vehicle")
+            raise InputError(f"{path}: {where} is no Vehicle")
         category = vehicle.get("vehicleCategory", "car")
         if category in _UNRECORDED:
-            yield name, _other_box(path, vehicle, told)
+            yield name, _other_box(path, vehicle, where)
             continue
         if category not in _KINDS:
-            raise InputError(f"{path}: {told}: vehicleCategory={category} is none of {', '.join(_KINDS)}")
+            raise InputError(f"{path}: {where}: vehicleCategory={category} is none of {', '.join(_KINDS)}")
         size, centre = vehicle.find("BoundingBox/Dimensions"), vehicle.find("BoundingBox/Center")
-        length, width = (number_of(path, size, x, f"the Dimensions of {told}") for x in ("length", "width"))
-        ahead, left = (number_of(path, centre, x, f"the Center of {told}") for x in ("x", "y"))
+        length, width = (number_of(path, size, x, f"the Dimensions of {where}") for x in ("length", "width"))
+        ahead, left = (number_of(path, centre, x, f"the Center of {where}") for x in ("x", "y"))
         yield (
             name,
-            Box(
-                _KINDS[category], category, length, width, (ahead, left), limits=_limits(path, vehicle, told)
+            ObjectBox(
+                _KINDS[category],
+                category,
+                length,
+                width,
+                (ahead, left),
+                limits=_performance_limits(path, vehicle, where),
             ),
         )
     if not seen:
         raise InputError(f"{path}: there is no ScenarioObject")
 
 
-def _limits(path: Path, vehicle: Element, told: str) -> tuple[float, float, float]:
+def _performance_limits(path: Path, vehicle: Element, where: str) -> tuple[float, float, float]:
     """The largest speed, acceleration and deceleration of a vehicle, infinite where it has no Performance."""
     node = vehicle.find("Performance")
     if node is None:
         return math.inf, math.inf, math.inf
     names = ("maxSpeed", "maxAcceleration", "maxDeceleration")
-    speed, *rates = (number_of(path, node, x, f"the Performance of {told}") for x in names)
+    speed, *rates = (number_of(path, node, x, f"the Performance of {where}") for x in names)
     return speed, rates[0], rates[1]
 
 
-def _other_box(path: Path, node: Element, told: str) -> Box:
-    """That of an object that is not recorded, without size where the file says none."""
+def _other_box(path: Path, node: Element, where: str) -> ObjectBox:
+    """Return the box of an object that is not recorded; without size where the file has none."""
     if node.find("BoundingBox") is None:
-        return Box(node.tag, node.tag, 0.0, 0.0, (0.0, 0.0), recorded=False)
+        return ObjectBox(node.tag, node.tag, 0.0, 0.0, (0.0, 0.0), recorded=False)
     size, centre = node.find("BoundingBox/Dimensions"), node.find("BoundingBox/Center")
-    length, width = (number_of(path, size, x, f"the Dimensions of {told}") for x in ("length", "width"))
-    ahead, left = (number_of(path, centre, x, f"the Center of {told}") for x in ("x", "y"))
-    return Box(node.tag, node.tag, length, width, (ahead, left), recorded=False)
+    length, width = (number_of(path, size, x, f"the Dimensions of {where}") for x in ("length", "width"))
+    ahead, left = (number_of(path, centre, x, f"the Center of {where}") for x in ("x", "y"))
+    return ObjectBox(node.tag, node.tag, length, width, (ahead, left), recorded=False)

@@ -9,7 +9,7 @@ from roadproof.errors import InputError
 from roadproof.extensions.exchange.streaming.evaluation import members_of
 from roadproof.extensions.exchange.streaming.functions import StreamMonitor, functions, heads, helpers_for
 from roadproof.extensions.exchange.streaming.plan import plan_of
-from roadproof.extensions.exchange.streaming.sample import Field, Source, fields_of
+from roadproof.extensions.exchange.streaming.sample import SampleField, Source, fields_of
 from roadproof.logic.formula import Formula
 from roadproof.semantics.sampled import compile
 
@@ -37,7 +37,7 @@ class CSource:
     name: str
     dt: Fraction
     monitors: tuple[StreamMonitor, ...]
-    fields: Mapping[Source, Field]
+    fields: Mapping[Source, SampleField]
 
     @property
     def files(self) -> dict[str, str]:
@@ -48,16 +48,16 @@ class CSource:
 def compile_c(
     formulas: Mapping[str, tuple[str, Formula]], dt: Fraction, name: str, most_bytes: int
 ) -> CSource:
-    """Monitors in C for formulas by label, each with its text; ``name`` is that of the files.
+    """Monitors in C for formulas by identifier, each with its text; ``name`` is that of the files.
 
     Parameters have values. Raises ``InputError`` for formulas that no monitor takes (``plan_of``,
     ``fields_of``) and for a state of more than ``most_bytes``.
     """
-    made = compile({label: formula for label, (_, formula) in formulas.items()})
-    names = {plain: f"{x.name}({', '.join(x.arguments)})" for x, plain in made.named.items()}
+    compiled = compile({identifier: formula for identifier, (_, formula) in formulas.items()})
+    names = {plain: f"{x.name}({', '.join(x.arguments)})" for x, plain in compiled.named.items()}
     monitors = tuple(
-        StreamMonitor(label, told, plan_of(made.plain[label], dt, names))
-        for label, (told, _) in formulas.items()
+        StreamMonitor(identifier, text, plan_of(compiled.plain[identifier], dt, names))
+        for identifier, (text, _) in formulas.items()
     )
     for monitor in monitors:
         if monitor.memory > most_bytes:
@@ -84,7 +84,7 @@ def _header(source: CSource) -> Iterator[str]:
     yield f"typedef enum {{ {big}_FALSE, {big}_UNKNOWN, {big}_TRUE }} {name}_verdict;"
     yield from ("", *_comment("One sample; a flag is 0 or not."), "typedef struct {")
     for field in source.fields.values():
-        yield f"    {'uint8_t' if field.flag else 'double'} {field.name}; /* {_harmless(field.about)} */"
+        yield f"    {'uint8_t' if field.flag else 'double'} {field.name}; /* {_comment_text(field.about)} */"
     if not source.fields:
         yield "    uint8_t unused;"
     yield f"}} {name}_sample;"
@@ -94,19 +94,19 @@ def _header(source: CSource) -> Iterator[str]:
 
 
 def _declarations(source: CSource, monitor: StreamMonitor) -> Iterator[str]:
-    big, plan = monitor.label.upper(), monitor.plan
-    yield from _comment(monitor.told, _about(monitor, source.dt))
+    big, plan = monitor.identifier.upper(), monitor.plan
+    yield from _comment(monitor.told, _verdict_note(monitor, source.dt))
     yield f"#define {big}_DELAY {plan.delay}u"
     yield f"#define {big}_REST {monitor.rest}u"
     yield f"#define {big}_BYTES {monitor.memory}u"
     yield "typedef struct {"
     yield from (f"    {member.declaration}" for member in members_of(plan))
-    yield f"}} {monitor.label}_state;"
+    yield f"}} {monitor.identifier}_state;"
     yield from (f"{head};" for head in heads(source.name, monitor))
 
 
-def _about(monitor: StreamMonitor, dt: Fraction) -> str:
-    """What verdicts are about, and what a sample costs."""
+def _verdict_note(monitor: StreamMonitor, dt: Fraction) -> str:
+    """Return the note on the subject of verdicts and the cost of a sample."""
     plan = monitor.plan
     late = f"{plan.delay} samples ({float(plan.delay * dt):g} s)"
     work = f" A sample costs {plan.look_ups} look-ups in tables." if plan.look_ups else ""
@@ -137,12 +137,12 @@ def _source(source: CSource) -> str:
 
 
 def _comment(*paragraphs: str) -> Iterator[str]:
-    lines = [line for text in paragraphs for line in wrap(_harmless(text), 95)]
+    lines = [line for text in paragraphs for line in wrap(_comment_text(text), 95)]
     ends = ["/* ", *(" * " for _ in lines[1:])]
     *first, last = (f"{begin}{line}" for begin, line in zip(ends, lines, strict=True))
     yield from (*first, f"{last} */")
 
 
-def _harmless(text: str) -> str:
+def _comment_text(text: str) -> str:
     """Text for a comment, in which no comment begins or ends."""
     return text.replace("*/", "* /").replace("/*", "/ *")

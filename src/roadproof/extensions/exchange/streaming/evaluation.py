@@ -19,11 +19,11 @@ from roadproof.extensions.exchange.streaming.plan import (
     Junction,
     LeafValue,
     Negation,
-    Node,
     Operand,
     Plan,
+    PlanNode,
     Widening,
-    Window,
+    WindowOperation,
 )
 
 _WORD = 64
@@ -143,7 +143,7 @@ def members_of(plan: Plan) -> list[Member]:
     for k, node in enumerate(plan.nodes):
         if node.kept:
             words.append(Member(f"past_{k}", node.kept + 1 if node.table else _words(node.kept)))
-        if isinstance(node.operation, Window) and not node.table:
+        if isinstance(node.operation, WindowOperation) and not node.table:
             numbers.append(Member(f"left_{k}", None))
         elif isinstance(node.operation, BoundedUntil) and not node.table:
             words.append(Member(f"met_{k}", _words(node.operation.width)))
@@ -160,7 +160,7 @@ def bytes_of(plan: Plan) -> int:
 
 
 def _words(highest: int) -> int:
-    """How many words hold the bits from 0 to ``highest``."""
+    """Return how many words hold the bits from 0 to ``highest``."""
     return highest // _WORD + 1
 
 
@@ -169,14 +169,14 @@ def statements(plan: Plan) -> Iterator[str]:
     for k, node in enumerate(plan.nodes):
         if not isinstance(node.operation, Constant):
             yield from (f"/* {name} */" for name in [plan.told.get(k)] if name)
-            yield from _Writer(plan, k, node).lines()
+            yield from _NodeWriter(plan, k, node).lines()
 
 
 @dataclass(frozen=True)
-class _Writer:
+class _NodeWriter:
     plan: Plan
     k: int
-    node: Node
+    node: PlanNode
 
     def lines(self) -> Iterator[str]:
         k, node = self.k, self.node
@@ -191,12 +191,12 @@ class _Writer:
                 yield self.set((" & " if universal else " | ").join(map(self.read, parts)))
             case Widening(operand):
                 yield self.set(self.read(operand))
-            case Window(_, operand, 0) if node.table:
+            case WindowOperation(_, operand, 0) if node.table:
                 yield self.set(self.padded(operand))
-            case Window(universal, operand, width) if node.table:
+            case WindowOperation(universal, operand, width) if node.table:
                 name = "meet" if universal else "join"
                 yield self.set(f"{name}(state->past_{operand.node}, {width}, {self.over}, {self.pad})")
-            case Window(universal, operand, width):
+            case WindowOperation(universal, operand, width):
                 yield from self.window(universal, operand, width)
             case BoundedUntil(left, right, width) if node.table:
                 both = f"state->past_{left.node}, state->past_{right.node}"
@@ -256,12 +256,12 @@ class _Writer:
         return f"wide({value})" if self.node.table else value
 
     def padded(self, operand: Operand) -> str:
-        """As ``read``, and after the end of the trace the padding."""
+        """Return the expression that reads an operand, or the padding after the end of the trace."""
         return f"(ended > {self.node.ready} ? {self.pad} : {self.read(operand)})"
 
     @property
     def over(self) -> str:
-        """How many of the newest values lie after the end of the trace."""
+        """Return how many of the newest values lie after the end of the trace."""
         return f"ended > {self.node.ready} ? ended - {self.node.ready} : 0"
 
     @property

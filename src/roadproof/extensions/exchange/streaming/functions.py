@@ -13,7 +13,7 @@ from textwrap import indent
 from roadproof.extensions.exchange.streaming import arithmetic, evaluation
 from roadproof.extensions.exchange.streaming.evaluation import bytes_of
 from roadproof.extensions.exchange.streaming.plan import Constant, Plan
-from roadproof.extensions.exchange.streaming.sample import Field, Source
+from roadproof.extensions.exchange.streaming.sample import SampleField, Source
 from roadproof.logic.formula import Compare
 
 _VARIABLES = (
@@ -27,7 +27,7 @@ _VARIABLES = (
 class StreamMonitor:
     """One formula as functions in C: ``label_step`` and others. ``told``: the formula as text."""
 
-    label: str
+    identifier: str
     told: str
     plan: Plan
 
@@ -38,37 +38,38 @@ class StreamMonitor:
 
     @property
     def rest(self) -> int:
-        """How many verdicts ``finish`` writes at most, and 1 where it writes none."""
+        """Return how many verdicts ``finish`` writes at most, and 1 where it writes none."""
         return 1 if self.plan.at_start else max(1, self.plan.delay)
 
 
 def heads(name: str, monitor: StreamMonitor) -> list[str]:
     """The heads of reset, step and finish."""
-    label = monitor.label
-    rest = f"{name}_verdict rest[{label.upper()}_REST]"
+    identifier = monitor.identifier
+    rest = f"{name}_verdict rest[{identifier.upper()}_REST]"
     return [
-        f"void {label}_reset({label}_state *state)",
-        f"{name}_verdict {label}_step({label}_state *state, const {name}_sample *sample)",
-        f"uint32_t {label}_finish(const {label}_state *state, {rest})",
+        f"void {identifier}_reset({identifier}_state *state)",
+        f"{name}_verdict {identifier}_step({identifier}_state *state, const {name}_sample *sample)",
+        f"uint32_t {identifier}_finish(const {identifier}_state *state, {rest})",
     ]
 
 
-def functions(name: str, monitor: StreamMonitor, fields: Mapping[Source, Field]) -> str:
+def functions(name: str, monitor: StreamMonitor, fields: Mapping[Source, SampleField]) -> str:
     """All functions of a monitor, one after the other."""
-    label, (reset, step, finish) = monitor.label, heads(name, monitor)
+    identifier, (reset, step, finish) = monitor.identifier, heads(name, monitor)
+    size = f"sizeof({identifier}_state) == {identifier.upper()}_BYTES"
     return "\n\n".join(
         [
-            f"typedef char {label}_size[(sizeof({label}_state) == {label.upper()}_BYTES) ? 1 : -1];",
+            f"typedef char {identifier}_size[({size}) ? 1 : -1];",
             _function(
-                f"static int {label}_observe(const {name}_sample *sample, uint8_t *seen)",
+                f"static int {identifier}_observe(const {name}_sample *sample, uint8_t *seen)",
                 _observe(monitor, fields),
             ),
             _function(
-                f"static uint32_t {label}_advance({label}_state *state, const uint8_t *seen, "
+                f"static uint32_t {identifier}_advance({identifier}_state *state, const uint8_t *seen, "
                 "uint32_t ended, uint64_t pad)",
                 _advance(monitor.plan),
             ),
-            _function(reset, [f"static const {label}_state fresh = {{ 0 }};", "*state = fresh;"]),
+            _function(reset, [f"static const {identifier}_state fresh = {{ 0 }};", "*state = fresh;"]),
             _function(step, _step(name.upper(), monitor)),
             _function(finish, _finish(name.upper(), monitor)),
         ]
@@ -77,11 +78,11 @@ def functions(name: str, monitor: StreamMonitor, fields: Mapping[Source, Field])
 
 def helpers_for(body: str) -> str:
     """The functions that are called in ``body`` or by another that is, one after the other."""
-    found: list[str] = []
+    helpers: list[str] = []
     for name, text in reversed([*arithmetic.HELPERS.items(), *evaluation.HELPERS.items()]):
-        if re.search(rf"\b{name}\(", body + "".join(found)):
-            found.append(text)
-    return "\n\n".join(reversed(found))
+        if re.search(rf"\b{name}\(", body + "".join(helpers)):
+            helpers.append(text)
+    return "\n\n".join(reversed(helpers))
 
 
 def _function(head: str, lines: Sequence[str]) -> str:
@@ -92,13 +93,13 @@ def _function(head: str, lines: Sequence[str]) -> str:
     return f"{head}\n{{\n{indent(unused + text, '    ')}\n}}"
 
 
-def _observe(monitor: StreamMonitor, fields: Mapping[Source, Field]) -> list[str]:
+def _observe(monitor: StreamMonitor, fields: Mapping[Source, SampleField]) -> list[str]:
     leaves = list(enumerate(monitor.plan.leaves))
     compared = [(k, leaf) for k, leaf in leaves if isinstance(leaf, Compare)]
     flags: dict[object, str] = {source: field.name for source, field in fields.items()}
     return [
         "int fine = 1;",
-        *arithmetic.limits(compared, fields),
+        *arithmetic.range_checks(compared, fields),
         *arithmetic.comparisons(compared, fields),
         *(f"seen[{k}] = sample->{flags[leaf]} != 0;" for k, leaf in leaves if not isinstance(leaf, Compare)),
         "return fine;",
@@ -134,16 +135,16 @@ def _first(owner: str, weak: str, plan: Plan) -> str:
 
 
 def _step(big: str, monitor: StreamMonitor) -> list[str]:
-    label, plan = monitor.label, monitor.plan
+    identifier, plan = monitor.identifier, monitor.plan
     open_ = f" || (!holds && {_first('state->', '1', plan)})" if plan.at_start else ""
     return [
         f"uint8_t seen[{max(1, len(plan.leaves))}];",
         "uint32_t holds;",
-        f"if (state->rejected || !{label}_observe(sample, seen)) {{",
+        f"if (state->rejected || !{identifier}_observe(sample, seen)) {{",
         "    state->rejected = 1;",
         f"    return {big}_UNKNOWN;",
         "}",
-        f"holds = {label}_advance(state, seen, 0, 0);",
+        f"holds = {identifier}_advance(state, seen, 0, 0);",
         f"if (state->count <= {plan.delay}{open_}) {{",
         f"    return {big}_UNKNOWN;",
         "}",
@@ -152,11 +153,11 @@ def _step(big: str, monitor: StreamMonitor) -> list[str]:
 
 
 def _finish(big: str, monitor: StreamMonitor) -> list[str]:
-    plan, delay, label = monitor.plan, monitor.plan.delay, monitor.label
+    plan, delay, identifier = monitor.plan, monitor.plan.delay, monitor.identifier
     if not delay and not plan.at_start:
         return ["(void)rest;", "(void)state;", "return 0;"]
     begin, end = f"for (k = 1; k <= {delay}; ++k) {{", "}"
-    advance = f"    holds = {label}_advance(&copy, seen, k, view ? ~(uint64_t)0 : 0);"
+    advance = f"    holds = {identifier}_advance(&copy, seen, k, view ? ~(uint64_t)0 : 0);"
     if plan.at_start:
         count = "1"
         newest = f"uint32_t holds = {_first('copy.', 'view', plan)};"
@@ -176,7 +177,7 @@ def _finish(big: str, monitor: StreamMonitor) -> list[str]:
         f"    rest[k] = {big}_UNKNOWN;",
         "}",
         "for (view = 0; view < 2 && state->count > 0 && !state->rejected; ++view) {",
-        f"    {label}_state copy = *state;",
+        f"    {identifier}_state copy = *state;",
         *(f"    {line}" for line in work),
         "}",
         "return count;",
@@ -184,5 +185,5 @@ def _finish(big: str, monitor: StreamMonitor) -> list[str]:
 
 
 def _judge(big: str, place: str, known: str = "") -> list[str]:
-    """What holds in the strong view is true, and what does not hold in the weak one is false."""
+    """Return the lines that decide: true where the strong view holds, false where the weak one does not."""
     return [f"if ({known}holds != view) {{", f"    rest[{place}] = holds ? {big}_TRUE : {big}_FALSE;", "}"]

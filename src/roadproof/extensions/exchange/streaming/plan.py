@@ -1,4 +1,4 @@
-"""How a formula is evaluated sample by sample: nodes in order, each with a fixed memory.
+"""The plan by which a formula is evaluated sample by sample: nodes in order, each with a fixed memory.
 
 The value of a node at sample k is known ``delay`` samples later. A formula that looks ahead for a bounded
 time has a value at every sample. Under an operator without a bound, values depend on samples to come: they
@@ -7,7 +7,7 @@ bits for n such operators, and each sample rewrites it (``next``); so the value 
 one word, however long the trace is.
 
 A formula under an odd number of ``not`` is ``opposite``: what lies after the end of the trace counts there as
-the opposite (``semantics.sampled.semantics``), so such nodes have a memory of their own.
+the opposite (``semantics.sampled.lattice``), so such nodes have a memory of their own.
 """
 
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ from typing import TypeAlias, assert_never
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.semantics.sampled.semantics import interval_steps
+from roadproof.semantics.sampled.lattice import interval_steps
 
 MOST_OPERATORS = 6
 """Of operators without a bound: a table of 2^6 bits fills a word."""
@@ -67,7 +67,7 @@ class Widening:
 
 
 @dataclass(frozen=True)
-class Window:
+class WindowOperation:
     """Always (``universal``) or eventually, over the last ``width`` + 1 values."""
 
     universal: bool
@@ -97,11 +97,13 @@ class Forever:
     variable: int
 
 
-Operation: TypeAlias = LeafValue | Constant | Negation | Junction | Widening | Window | BoundedUntil | Forever
+Operation: TypeAlias = (
+    LeafValue | Constant | Negation | Junction | Widening | WindowOperation | BoundedUntil | Forever
+)
 
 
 @dataclass(frozen=True)
-class Node:
+class PlanNode:
     """One step of a plan. ``kept``: how many earlier values are remembered.
 
     ``ready``: the delay with which operands are read; temporal operators add to it.
@@ -125,24 +127,24 @@ class Plan:
 
     formula: Formula
     leaves: tuple[Formula, ...]
-    nodes: tuple[Node, ...]
+    nodes: tuple[PlanNode, ...]
     variables: int
     strong: int
     told: Mapping[int, str] = field(default_factory=dict)
 
     @property
     def delay(self) -> int:
-        """Of the whole formula, in samples."""
+        """The delay of the whole formula, in samples."""
         return self.nodes[-1].delay
 
     @property
     def at_start(self) -> bool:
-        """Whether verdicts are about the first sample, not about each."""
+        """Return whether verdicts are about the first sample, not about each."""
         return self.nodes[-1].table
 
     @property
     def rows(self) -> int:
-        """Of a table."""
+        """The number of rows of a table."""
         return 1 << self.variables
 
     @property
@@ -152,7 +154,9 @@ class Plan:
 
     @property
     def look_ups(self) -> int:
-        """How many bits of tables a sample looks up: those that are remembered, and that of the start."""
+        """Return how many bits of tables a sample looks up: those that are remembered, and that of the
+        start.
+        """
         tables = sum(node.kept for node in self.nodes if node.table)
         return self.rows * (tables + 1) if self.at_start else 0
 
@@ -179,10 +183,10 @@ def plan_of(formula: Formula, dt: Fraction, names: Mapping[Formula, str]) -> Pla
             f"looks ahead by at most {MOST_DELAY}: shorten the intervals or take a longer --dt"
         )
     strong = sum(1 << x.operation.variable for x in nodes if isinstance(x.operation, Forever) and x.opposite)
-    kept = _kept(nodes)
-    made = tuple(replace(node, kept=kept.get(k, 0)) for k, node in enumerate(nodes))
-    told = {k: names[x] for (x, _, _), k in planner.known.items() if x in names}
-    return Plan(formula, tuple(planner.leaves), made, planner.variables, strong, told)
+    history = _history_lengths(nodes)
+    planned_nodes = tuple(replace(node, kept=history.get(k, 0)) for k, node in enumerate(nodes))
+    definitions = {k: names[x] for (x, _, _), k in planner.known.items() if x in names}
+    return Plan(formula, tuple(planner.leaves), planned_nodes, planner.variables, strong, definitions)
 
 
 def operands(operation: Operation) -> tuple[Operand, ...]:
@@ -190,7 +194,7 @@ def operands(operation: Operation) -> tuple[Operand, ...]:
     match operation:
         case LeafValue() | Constant():
             return ()
-        case Negation(operand) | Widening(operand) | Window(_, operand, _):
+        case Negation(operand) | Widening(operand) | WindowOperation(_, operand, _):
             return (operand,)
         case Junction(_, parts):
             return parts
@@ -202,16 +206,16 @@ def operands(operation: Operation) -> tuple[Operand, ...]:
             assert_never(operation)
 
 
-def _kept(nodes: list[Node]) -> Mapping[int, int]:
-    """How many earlier values of each node are read later."""
-    found = dict[int, int]()
+def _history_lengths(nodes: list[PlanNode]) -> Mapping[int, int]:
+    """Return how many earlier values of each node are read later."""
+    lengths = dict[int, int]()
     for node in nodes:
         operation = node.operation
-        wide = operation.width if isinstance(operation, Window | BoundedUntil) and node.table else 0
+        wide = operation.width if isinstance(operation, WindowOperation | BoundedUntil) and node.table else 0
         for operand in operands(operation):
             if not isinstance(nodes[operand.node].operation, Constant):
-                found[operand.node] = max(found.get(operand.node, 0), operand.lag + wide)
-    return found
+                lengths[operand.node] = max(lengths.get(operand.node, 0), operand.lag + wide)
+    return lengths
 
 
 class _Planner:
@@ -220,7 +224,7 @@ class _Planner:
 
     def __init__(self, dt: Fraction) -> None:
         self.dt = dt
-        self.nodes: list[Node] = []
+        self.nodes: list[PlanNode] = []
         self.leaves: dict[Formula, int] = {}
         self.variables = 0
         self.known: dict[tuple[Formula, bool, int], int] = {}
@@ -245,7 +249,9 @@ class _Planner:
             case f.Until(left, interval, right):
                 low, high = interval_steps(interval, self.dt)
                 return (right,) if low == high else (left, right)
-            case _:
+            case f.Truth() | f.Compare() | f.Occupies() | f.Not() | f.And() | f.Or() | f.Application():
+                return f.children(formula)
+            case f.Eventually() | f.Always():
                 return f.children(formula)
 
     def place(self, formula: Formula, opposite: bool, least: int = 0) -> int:
@@ -263,14 +269,14 @@ class _Planner:
         table = self.look(formula)[1]
         match formula:
             case f.Truth(value):
-                return self._add(Node(Constant(value), 0, 0))
+                return self._add(PlanNode(Constant(value), 0, 0))
             case f.Compare() | f.Occupies() | f.Some() | f.Every():
-                return self._add(Node(LeafValue(self.leaves.setdefault(formula, len(self.leaves))), 0, 0))
+                return self._add(PlanNode(LeafValue(self.leaves.setdefault(formula, len(self.leaves))), 0, 0))
             case f.Application(_, _, body):
                 return self.place(body, opposite, delay)
             case f.Not(body):
                 below = Operand(self.place(body, not opposite, delay), 0)
-                return self._add(Node(Negation(below), delay, delay, table=table))
+                return self._add(PlanNode(Negation(below), delay, delay, table=table))
             case f.And(parts) | f.Or(parts):
                 each = [self.place(part, opposite, delay) for part in parts]
                 return self._join(isinstance(formula, f.And), list(dict.fromkeys(each)), delay)
@@ -279,7 +285,7 @@ class _Planner:
             case _:
                 assert_never(formula)
 
-    def _add(self, node: Node) -> int:
+    def _add(self, node: PlanNode) -> int:
         self.nodes.append(node)
         return len(self.nodes) - 1
 
@@ -289,18 +295,18 @@ class _Planner:
         for part in parts:
             by_delay.setdefault(self.nodes[part].delay, []).append(part)
         if len(by_delay) > 1:
-            parts = [self._joined(universal, group, at) for at, group in by_delay.items()]
-        return self._joined(universal, parts, delay)
+            parts = [self._junction(universal, group, at) for at, group in by_delay.items()]
+        return self._junction(universal, parts, delay)
 
-    def _joined(self, universal: bool, parts: list[int], delay: int) -> int:
+    def _junction(self, universal: bool, parts: list[int], delay: int) -> int:
         if len(parts) == 1:
             return parts[0]
         table = any(self.nodes[k].table for k in parts)
         read = tuple(self._at(k, delay) for k in parts)
-        return self._add(Node(Junction(universal, read), delay, delay, table=table))
+        return self._add(PlanNode(Junction(universal, read), delay, delay, table=table))
 
     def _at(self, node: int, delay: int) -> Operand:
-        """Where a node is read so that it has ``delay``."""
+        """Return where a node is read so that it has ``delay``."""
         return Operand(node, delay - self.nodes[node].delay)
 
     def _temporal(
@@ -311,15 +317,15 @@ class _Planner:
         universal, table = isinstance(formula, f.Always), self.look(formula)[1]
         parts = [self.place(x, opposite, ready) for x in self._read(formula)]
         if high is not None and table:
-            parts = [k if self.nodes[k].table else self._widened(k, ready) for k in parts]
+            parts = [k if self.nodes[k].table else self._widening(k, ready) for k in parts]
         *left, right = (self._at(k, ready) for k in parts)
         if high is None:
             variable, self.variables = self.variables, self.variables + 1
             forever = Forever(universal, left[0] if left else None, right, variable)
-            return self._add(Node(forever, ready, delay, opposite, table=True))
+            return self._add(PlanNode(forever, ready, delay, opposite, table=True))
         width = high - low
-        operation = BoundedUntil(left[0], right, width) if left else Window(universal, right, width)
-        return self._add(Node(operation, ready, delay, opposite, table))
+        operation = BoundedUntil(left[0], right, width) if left else WindowOperation(universal, right, width)
+        return self._add(PlanNode(operation, ready, delay, opposite, table))
 
-    def _widened(self, below: int, delay: int) -> int:
-        return self._add(Node(Widening(self._at(below, delay)), delay, delay, table=True))
+    def _widening(self, below: int, delay: int) -> int:
+        return self._add(PlanNode(Widening(self._at(below, delay)), delay, delay, table=True))

@@ -1,22 +1,22 @@
-"""A derivation that a formula is true of a drive, read off the sets of instants at which its parts are true.
+"""Derivations that a formula is true of a drive, guided by the truth sets of its parts.
 
-The exact judge says when each part is true; here an instant is chosen for each `F`, a disjunct for each `or`,
-and rational instants at which the choice changes. Where it has to change exactly at an irrational instant,
-cases are made of the sign of a polynomial, which decides the comparisons that change; where that is not
-enough there is no derivation. Nothing rests on this: Coq checks what comes out.
+The exact judge computes when each part is true. A derivation chooses an instant for each `F`, a disjunct for
+each `or`, and rational instants at which the choice changes. If the change must be at an irrational instant,
+the derivation splits on the sign of a polynomial that decides the comparisons; if that is not enough, there
+is none. Not trusted: Coq checks the derivation.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TypeAlias, assert_never
+from typing import assert_never
 
 from roadproof.evidence import periodic
 from roadproof.evidence.periodic import PeriodicJudge, Window
 from roadproof.extensions.kernel.derivation import (
     Crossing,
+    DerivationStep,
     Soon,
-    Step,
     case,
     crossed,
     element,
@@ -24,6 +24,7 @@ from roadproof.extensions.kernel.derivation import (
     soon,
     timed,
 )
+from roadproof.extensions.kernel.derivations.lanelets import LaneletNumbers, Scope
 from roadproof.extensions.kernel.derivations.parts import (
     NoDerivationError,
     at_once,
@@ -32,19 +33,19 @@ from roadproof.extensions.kernel.derivations.parts import (
     covered,
     cuts_between,
     image,
+    join_steps,
     moments,
     moved,
     narrowed,
-    put_together,
     run,
     widened,
 )
-from roadproof.extensions.kernel.derivations.rounds import in_rounds, is_first, ruled
+from roadproof.extensions.kernel.derivations.rounds import by_rule, in_rounds, is_first
 from roadproof.extensions.kernel.derivations.signs import (
     DriveShapes,
-    Part,
     Shapes,
     Signs,
+    TimePart,
     assume,
     compares,
     occupies,
@@ -55,49 +56,40 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import leaves_of, with_values, without_names
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.semantics.exact.algebraic import Root
-from roadproof.semantics.exact.exact import NOTHING_GIVEN, seconds
+from roadproof.semantics.exact.judging import NOTHING_GIVEN, interval_seconds
 from roadproof.semantics.exact.polynomial import negate, polynomial, sign_at
-from roadproof.semantics.exact.signals import AbstractSignals, Courses
-from roadproof.semantics.exact.truth import (
-    ALWAYS,
-    START,
-    Cut,
-    TruthSet,
-    complement,
-    intersection,
-    union,
-)
+from roadproof.semantics.exact.signals import AbstractSignals, TermPieces
+from roadproof.semantics.exact.truth import ALWAYS, START, Cut, TruthSet, complement, intersection, union
 from roadproof.world.drive import Drive
 from roadproof.world.road import Road
 
 MOST_STEPS = 5_000
-NOTHING = Courses(AbstractSignals({}, {}))
-NOW = Part(Cut(Fraction(0), False), Cut(Fraction(0), True))
-# What a bound variable speaks of: the number of a lanelet, which stands for its lane, too.
-Scope: TypeAlias = Mapping[str, int]
+NOTHING = TermPieces(AbstractSignals({}, {}))
+NOW = TimePart(Cut(Fraction(0), False), Cut(Fraction(0), True))
 
 
 def derive(
     formula: Formula, drive: Drive, road: Road, lanes: Mapping[str, str], values: Mapping[str, Fraction]
-) -> Step:
-    """Why ``formula`` is true of a drive at time 0.
+) -> DerivationStep:
+    """Return a derivation that ``formula`` is true of a drive at time 0.
 
-    Raises ``NoDerivationError``; also where the formula is false.
+    Raises ``NoDerivationError``, also if the formula is false.
     """
     return derive_on(DriveShapes(values, drive), with_values(without_names(formula), values), road, lanes)
 
 
-def derive_on(shapes: Shapes, formula: Formula, road: Road, lanes: Mapping[str, str]) -> Step:
-    """Why a formula without parameters is true at time 0. Raises as ``derive``."""
-    return _Finding(road, lanes, shapes).why(without_empty_windows(formula), {}, True, NOW)
+def derive_on(shapes: Shapes, formula: Formula, road: Road, lanes: Mapping[str, str]) -> DerivationStep:
+    """Return a derivation of a formula without parameters at time 0. Raises ``NoDerivationError``."""
+    return _Deriver(LaneletNumbers(road, lanes), shapes).why(without_empty_windows(formula), {}, True, NOW)
 
 
 @dataclass
-class _Finding:
-    road: Road
-    lanes: Mapping[str, str]
+class _Deriver:
+    """A search for derivations on one drive or trace."""
+
+    lanelets: LaneletNumbers
     shapes: Shapes
     judges: dict[tuple[tuple[str, int], ...], "_ScopedJudge"] = field(default_factory=dict)
     steps: int = 0
@@ -105,67 +97,47 @@ class _Finding:
     # --- when something is true ---------------------------------------------------------------------
 
     def when(self, formula: Formula, scope: Scope, positive: bool = True) -> TruthSet:
+        """Return the times at which a formula is true, or false if not ``positive``."""
         key = tuple(sorted(scope.items()))
         if key not in self.judges:
             loop = self.shapes.loop
-            self.judges[key] = _ScopedJudge(NOTHING, NOTHING_GIVEN, loop=loop, finding=self, scope=scope)
+            self.judges[key] = _ScopedJudge(NOTHING, NOTHING_GIVEN, loop=loop, deriver=self, scope=scope)
         truth = self.judges[key].visit(formula)
         return truth if positive else self._first_round(complement(truth))
 
     def ahead(self, formula: Formula, scope: Scope, low: Fraction, positive: bool = True) -> TruthSet:
-        """The same, in as many rounds as matter to windows from ``low`` on."""
-        found, loop = self.when(formula, scope, positive), self.shapes.loop
-        return found if loop is None else periodic.ahead(found, low, loop)
+        """Return ``when`` in as many rounds as matter to windows from ``low`` on."""
+        truth, loop = self.when(formula, scope, positive), self.shapes.loop
+        return truth if loop is None else periodic.unroll_ahead(truth, low, loop)
 
     def _first_round(self, truth: TruthSet) -> TruthSet:
         loop = self.shapes.loop
         return truth if loop is None else periodic.first_round(truth, loop)
 
     def _searched(self, window: Window) -> Window:
-        """A window without what lies so late in it that it came before."""
-        return window if self.shapes.loop is None else periodic.clipped(window, self.shapes.loop)
-
-    def number(self, name: str, scope: Scope) -> int:
-        """Which lanelet a name stands for; a lane by its first one."""
-        if name in scope:
-            return scope[name]
-        lane = self.lanes.get(name, name)
-        for number, lanelet in enumerate(self.road.lanelets):
-            if lanelet.lane == lane:
-                return number
-        raise NoDerivationError(Why.NO_LANE(name))
-
-    def members(self, domain: f.Domain, scope: Scope) -> list[int]:
-        lanelets = list(enumerate(self.road.lanelets))
-        if domain.kind == "lanes":
-            return [k for k, _ in lanelets]
-        if domain.kind == "zone":
-            return [k for k, x in lanelets if x.zone == domain.of]
-        lane = self.road.lanelets[self.number(domain.of, scope)].lane
-        if domain.kind == "lanelets":
-            return [k for k, x in lanelets if x.lane == lane]
-        return [k for k, x in lanelets if x.lane in self.road.beside(lane)]
+        """Return the window without its part so late that the same states also occur earlier in it."""
+        return window if self.shapes.loop is None else periodic.clip(window, self.shapes.loop)
 
     # --- why it is ----------------------------------------------------------------------------------
 
-    def why(self, formula: Formula, scope: Scope, positive: bool, part: Part) -> Step:
-        """Why ``formula`` is true (or false) at every instant of ``part``."""
+    def why(self, formula: Formula, scope: Scope, positive: bool, part: TimePart) -> DerivationStep:
+        """Return a derivation that ``formula`` is true (or false) at every instant of ``part``."""
         self.steps += 1
         if self.steps > MOST_STEPS:
-            raise NoDerivationError(Why.TOO_MANY_STEPS(MOST_STEPS))
+            raise NoDerivationError(ReasonKind.TOO_MANY_STEPS(MOST_STEPS))
         loop = self.shapes.loop
         if loop is not None and not is_first(part, loop):
             pieces = in_rounds(part, loop)
-            return put_together([(x, ruled(r, self.why(formula, scope, positive, y))) for x, y, r in pieces])
+            return join_steps([(x, by_rule(r, self.why(formula, scope, positive, y))) for x, y, r in pieces])
         if not contains(self.when(formula, scope, positive), part):
-            raise NoDerivationError(Why.NOT_SO())
+            raise NoDerivationError(ReasonKind.NOT_SO())
         match formula:
             case f.Truth():
-                return Step("Plain")
+                return DerivationStep("Plain")
             case f.Compare() | f.Occupies():
                 return self._sign(formula, scope, positive, part)
             case f.Not(body):
-                return Step("Turn", (), (self.why(body, scope, not positive, part),))
+                return DerivationStep("Turn", (), (self.why(body, scope, not positive, part),))
             case f.And(parts):
                 return self._joined(parts, scope, positive, part, f.And, both=positive)
             case f.Or(parts):
@@ -175,69 +147,71 @@ class _Finding:
             case f.Every(variable, domain, body):
                 return self._quantified(variable, domain, body, scope, positive, part, one=not positive)
             case f.Eventually(interval, body):
-                return self._timed(body, scope, positive, part, seconds(interval), once=positive)
+                return self._timed(body, scope, positive, part, interval_seconds(interval), once=positive)
             case f.Always(interval, body):
-                return self._timed(body, scope, positive, part, seconds(interval), once=not positive)
+                return self._timed(body, scope, positive, part, interval_seconds(interval), once=not positive)
             case f.Until(left, interval, right) if positive:
-                return self._until(left, right, scope, part, seconds(interval))
+                return self._until(left, right, scope, part, interval_seconds(interval))
             case f.Until(left, interval, right):
-                return self._not_until(left, right, scope, part, seconds(interval))
+                return self._not_until(left, right, scope, part, interval_seconds(interval))
             case f.Application(_, _, body):
                 return self.why(body, scope, positive, part)
             case _:
                 assert_never(formula)
 
-    def _sign(self, formula: f.Compare | f.Occupies, scope: Scope, positive: bool, part: Part) -> Step:
+    def _sign(
+        self, formula: f.Compare | f.Occupies, scope: Scope, positive: bool, part: TimePart
+    ) -> DerivationStep:
         leaves: set[t.Leaf]
         if isinstance(formula, f.Occupies):
             leaves = {t.Signal("s", formula.vehicle)}
-            lanelet = self.road.lanelets[self.number(formula.lanelet, scope)]
+            lanelet = self.lanelets.lanelet(formula.lanelet, scope)
 
-            def is_seen(part: Part, signs: Signs) -> bool:
+            def is_seen(part: TimePart, signs: Signs) -> bool:
                 return occupies(self.shapes, formula.vehicle, lanelet, positive, part, signs)
         else:
             leaves = {*leaves_of(formula)}
             op = formula.op if positive else f.NEGATED[formula.op]
 
-            def is_seen(part: Part, signs: Signs) -> bool:
+            def is_seen(part: TimePart, signs: Signs) -> bool:
                 return compares(self.shapes, formula.left, op, formula.right, part, signs)
 
         steps = sorted({x for leaf in leaves for x in self.shapes.steps(leaf)})
-        found: list[tuple[Part, Step]] = []
+        steps_of_parts: list[tuple[TimePart, DerivationStep]] = []
         for whole in part.around(steps):
             knots = sorted({x for leaf in leaves for x in self.shapes.knots(leaf) if whole.has_inside(x)})
             cuts: list[Fraction] = []
             for place, piece in enumerate(whole.cut(knots)):
                 cuts += knots[place - 1 : place] if place else []
                 cuts += cuts_between(is_seen, piece)
-            found.append((whole, sign(tuple(cuts))))
-        return put_together(found)
+            steps_of_parts.append((whole, sign(tuple(cuts))))
+        return join_steps(steps_of_parts)
 
     def _joined(
         self,
         parts: Sequence[Formula],
         scope: Scope,
         positive: bool,
-        part: Part,
+        part: TimePart,
         kind: type[f.And | f.Or],
         both: bool,
-    ) -> Step:
-        """``p and q and r`` is ``p and (q and r)`` for Coq."""
+    ) -> DerivationStep:
+        """Return a derivation of a conjunction or disjunction; Coq nests it: ``p and (q and r)``."""
         if not parts:
-            return Step("Plain")
+            return DerivationStep("Plain")
         if len(parts) == 1:
             return self.why(parts[0], scope, positive, part)
         sides = parts[0], parts[1] if len(parts) == 2 else kind(tuple(parts[1:]))
         if both:
-            return Step("Both", (), tuple(self.why(x, scope, positive, part) for x in sides))
-        found: list[tuple[Part, Step]] = []
+            return DerivationStep("Both", (), tuple(self.why(x, scope, positive, part) for x in sides))
+        steps: list[tuple[TimePart, DerivationStep]] = []
         for piece, place in covered(part, [self.when(x, scope, positive) for x in sides]):
             if isinstance(place, Root):
-                found.append((piece, self._case(kind(tuple(parts)), scope, positive, piece, place)))
+                steps.append((piece, self._case(kind(tuple(parts)), scope, positive, piece, place)))
                 continue
             step = self.why(sides[place], scope, positive, piece)
-            found.append((piece, Step("One", (str(place == 1).lower(),), (step,))))
-        return put_together(found)
+            steps.append((piece, DerivationStep("One", (str(place == 1).lower(),), (step,))))
+        return join_steps(steps)
 
     def _quantified(
         self,
@@ -246,28 +220,32 @@ class _Finding:
         body: Formula,
         scope: Scope,
         positive: bool,
-        part: Part,
+        part: TimePart,
         one: bool,
-    ) -> Step:
-        members = self.members(domain, scope)
+    ) -> DerivationStep:
+        members = self.lanelets.members(domain, scope)
         scopes = [{**scope, variable: e} for e in members]
         if not one:
-            return Step("Each", (), tuple(self.why(body, x, positive, part) for x in scopes), many=True)
-        found: list[tuple[Part, Step]] = []
+            return DerivationStep(
+                "Each", (), tuple(self.why(body, x, positive, part) for x in scopes), many=True
+            )
+        steps: list[tuple[TimePart, DerivationStep]] = []
         for piece, place in covered(part, [self.when(body, x, positive) for x in scopes]):
             if isinstance(place, Root):
                 whole = (f.Some if positive else f.Every)(variable, domain, body)
-                found.append((piece, self._case(whole, scope, positive, piece, place)))
+                steps.append((piece, self._case(whole, scope, positive, piece, place)))
                 continue
-            found.append((piece, element(members[place], self.why(body, scopes[place], positive, piece))))
-        return put_together(found)
+            steps.append((piece, element(members[place], self.why(body, scopes[place], positive, piece))))
+        return join_steps(steps)
 
-    def _case(self, formula: Formula, scope: Scope, positive: bool, part: Part, change: Root) -> Step:
-        """Where a polynomial that has this root is above 0, and where it is not."""
+    def _case(
+        self, formula: Formula, scope: Scope, positive: bool, part: TimePart, change: Root
+    ) -> DerivationStep:
+        """Return a derivation by cases: the polynomial with this root is above 0, or not."""
         changing = polynomial(*change.polynomial)
         above, not_above = (assume(self.shapes, formula, part, changing, x) for x in (True, False))
         if formula in (above, not_above):
-            raise NoDerivationError(Why.IRRATIONAL_CHANGE())
+            raise NoDerivationError(ReasonKind.IRRATIONAL_CHANGE())
         return case(
             changing.coefficients,
             self.why(above, scope, positive, part),
@@ -279,62 +257,62 @@ class _Finding:
         body: Formula,
         scope: Scope,
         positive: bool,
-        part: Part,
+        part: TimePart,
         window: Window,
         once: bool,
-    ) -> Step:
+    ) -> DerivationStep:
         if not once:
-            return Step("Whole", (), (self.why(body, scope, positive, widened(part, window)),))
-        found: list[tuple[Part, Step]] = []
+            return DerivationStep("Whole", (), (self.why(body, scope, positive, widened(part, window)),))
+        steps: list[tuple[TimePart, DerivationStep]] = []
         when = self.ahead(body, scope, window[0], positive)
         for piece, moment in moments(part, self._searched(window), when, ALWAYS):
             if isinstance(moment, Crossing):
-                found.append((piece, self._crossed(moment, scope, positive, body)))
+                steps.append((piece, self._crossed(moment, scope, positive, body)))
                 continue
             step = self.why(body, scope, positive, image(piece, moment))
-            found.append((piece, timed("Moment", moment, step)))
-        return put_together(found)
+            steps.append((piece, timed("Moment", moment, step)))
+        return join_steps(steps)
 
     def _until(
         self,
         left: Formula,
         right: Formula,
         scope: Scope,
-        part: Part,
+        part: TimePart,
         window: Window,
-    ) -> Step:
-        found: list[tuple[Part, Step]] = []
-        comes, kept = (self.ahead(x, scope, window[0]) for x in (right, left))
-        for piece, moment in moments(part, self._searched(window), comes, kept):
+    ) -> DerivationStep:
+        steps: list[tuple[TimePart, DerivationStep]] = []
+        comes, lasting = (self.ahead(x, scope, window[0]) for x in (right, left))
+        for piece, moment in moments(part, self._searched(window), comes, lasting):
             if isinstance(moment, Crossing):
                 begin = moved(piece.begin, window[0])
-                found.append((piece, self._crossed(moment, scope, True, right, left, begin)))
+                steps.append((piece, self._crossed(moment, scope, True, right, left, begin)))
                 continue
-            before = Step("Plain")
+            before = DerivationStep("Plain")
             if not at_once(piece, moment, window[0]):
                 before = self.why(left, scope, True, run(piece, moment, window[0], out=True))
             after = self.why(right, scope, True, image(piece, moment))
-            found.append((piece, timed("Reach", moment, before, after)))
-        return put_together(found)
+            steps.append((piece, timed("Reach", moment, before, after)))
+        return join_steps(steps)
 
     def _not_until(
         self,
         left: Formula,
         right: Formula,
         scope: Scope,
-        part: Part,
+        part: TimePart,
         window: Window,
-    ) -> Step:
+    ) -> DerivationStep:
         never, failing = (self.ahead(x, scope, window[0], False) for x in (right, left))
-        found: list[tuple[Part, Step]] = []
+        steps: list[tuple[TimePart, DerivationStep]] = []
         for piece, moment in breaks(part, self._searched(window), never, failing):
             if moment is None:
-                step = Step("Whole", (), (self.why(right, scope, False, widened(piece, window)),))
+                step = DerivationStep("Whole", (), (self.why(right, scope, False, widened(piece, window)),))
             elif isinstance(moment, Crossing):
                 step = self._crossed(moment, scope, False, left, right, moved(piece.begin, window[0]))
             elif isinstance(moment, Soon):
-                early = Part(moved(piece.begin, window[0]), Cut(moment.begin, True))
-                late = Part(early.end or early.begin, Cut(moment.end, False))
+                early = TimePart(moved(piece.begin, window[0]), Cut(moment.begin, True))
+                late = TimePart(early.end or early.begin, Cut(moment.end, False))
                 step = soon(moment, self.why(right, scope, False, early), self.why(left, scope, False, late))
             else:
                 step = timed(
@@ -343,8 +321,8 @@ class _Finding:
                     self.why(left, scope, False, image(piece, moment)),
                     self.why(right, scope, False, run(piece, moment, window[0], out=False)),
                 )
-            found.append((piece, step))
-        return put_together(found)
+            steps.append((piece, step))
+        return join_steps(steps)
 
     def _crossed(
         self,
@@ -354,19 +332,22 @@ class _Finding:
         last: Formula,
         lasting: Formula | None = None,
         begin: Cut = START,
-    ) -> Step:
-        """What comes at an irrational instant, or right after it, and what lasts from ``begin`` to it."""
+    ) -> DerivationStep:
+        """Return a derivation with an irrational instant.
+
+        ``last`` holds at it or right after it, ``lasting`` from ``begin`` up to it.
+        """
         formulas = [last] if lasting is None else [last, lasting]
         leaves = {x for formula in formulas for x in leaves_of(formula)}
         times = {x for leaf in leaves for x in (*self.shapes.knots(leaf), *self.shapes.steps(leaf))}
         moment = narrowed(moment, times)
-        near = Part(Cut(moment.begin, False), Cut(moment.end, True))
+        near = TimePart(Cut(moment.begin, False), Cut(moment.end, True))
         at_it = lasting is None or positive
         above = sign_at(moment.polynomial, moment.begin if at_it else moment.end)
         changing = polynomial(*(above * x for x in moment.polynomial))
-        before = between = Step("Plain")
+        before = between = DerivationStep("Plain")
         if lasting is not None:
-            before = self.why(lasting, scope, positive, Part(begin, Cut(moment.begin, True)))
+            before = self.why(lasting, scope, positive, TimePart(begin, Cut(moment.begin, True)))
             between = self.why(assume(self.shapes, lasting, near, changing, positive), scope, positive, near)
         if at_it:
             last = assume(self.shapes, last, near, negate(changing), False)
@@ -376,21 +357,25 @@ class _Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class _ScopedJudge(PeriodicJudge):
-    """Judges formulas on the drive, and on its road with what bound variables stand for."""
+    """A judge of formulas on the drive and its road; ``scope`` has the values of bound variables."""
 
-    finding: _Finding
+    deriver: _Deriver
     scope: Scope
 
     def _visit(self, formula: Formula) -> TruthSet:
         match formula:
             case f.Compare():
-                return self.finding.shapes.when(formula)
+                return self.deriver.shapes.when(formula)
             case f.Occupies(vehicle, name):
-                lanelet = self.finding.road.lanelets[self.finding.number(name, self.scope)]
+                lanelet = self.deriver.lanelets.lanelet(name, self.scope)
                 return self.visit(occupies_formula(vehicle, lanelet))
             case f.Some(variable, domain, body) | f.Every(variable, domain, body):
-                scopes = ({**self.scope, variable: e} for e in self.finding.members(domain, self.scope))
-                truths = [self.finding.when(body, scope) for scope in scopes]
+                scopes = (
+                    {**self.scope, variable: e} for e in self.deriver.lanelets.members(domain, self.scope)
+                )
+                truths = [self.deriver.when(body, scope) for scope in scopes]
                 return union(truths) if isinstance(formula, f.Some) else intersection(truths)
-            case _:
+            case f.Truth() | f.Not() | f.And() | f.Or() | f.Application():
+                return PeriodicJudge._visit(self, formula)
+            case f.Until() | f.Eventually() | f.Always():
                 return PeriodicJudge._visit(self, formula)

@@ -1,64 +1,70 @@
-"""A drive file as what is put to Coq."""
+"""Drive files and traces as Coq modules with derivations."""
 
 from collections.abc import Callable
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.kernels import Ruling, Word
-from roadproof.evidence.refutation import numbered
-from roadproof.extensions.kernel.accept import CoqModule, without_question, without_text
-from roadproof.extensions.kernel.derivation import Step
+from roadproof.evidence.kernels import KernelRuling, KernelVerdict
+from roadproof.evidence.refutation import with_trace_values
+from roadproof.extensions.kernel.accept import CoqModule, refused_module, unprintable_module
+from roadproof.extensions.kernel.derivation import DerivationStep
 from roadproof.extensions.kernel.derivations.derive import derive, derive_on
 from roadproof.extensions.kernel.derivations.parts import NoDerivationError
 from roadproof.extensions.kernel.derivations.traces import TraceShapes
-from roadproof.extensions.kernel.drive import Shown, claim_text, module, shown
+from roadproof.extensions.kernel.drive import DriveStatement, drive_claim_text, drive_module, drive_statement
 from roadproof.extensions.kernel.source import ClaimText, Module
-from roadproof.extensions.kernel.trace import Refutation, Refuted, refuted, trace_claim, trace_module
+from roadproof.extensions.kernel.trace import (
+    TraceQuestion,
+    TraceStatement,
+    trace_claim_text,
+    trace_module,
+    trace_statement,
+)
 from roadproof.library.specification import Library
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import with_values
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 
 
 def prepare(
     name: str,
     file: DriveFile,
     library: Library,
-    written: Callable[[str, Shown, ClaimText, Step], Module] = module,
+    print_module: Callable[[str, DriveStatement, ClaimText, DerivationStep], Module] = drive_module,
 ) -> CoqModule:
-    """The drive as ``written`` with a derivation of its claim, or why there is none."""
+    """Return the module of a drive with a derivation of its claim, or the reason why there is none."""
     try:
-        what = shown(file, library)
+        statement = drive_statement(file, library)
     except RoadproofError as error:
-        return without_question(error)
+        return refused_module(error)
     try:
-        printed = claim_text(what)
-        derivation = derive(what.formula, file.drive, what.world.road, file.lanes, what.values)
-        return CoqModule(written(name, what, printed, derivation))
+        printed = drive_claim_text(statement)
+        derivation = derive(statement.formula, file.drive, statement.world.road, file.lanes, statement.values)
+        return CoqModule(print_module(name, statement, printed, derivation))
     except NoDerivationError as error:
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, Why.NO_DERIVATION(error)))
+        return CoqModule(None, refusal=KernelRuling(KernelVerdict.UNKNOWN, ReasonKind.NO_DERIVATION(error)))
     except RoadproofError as error:
-        return without_text(error)
+        return unprintable_module(error)
 
 
 def prepare_trace(
     name: str,
-    asked: Refutation,
+    question: TraceQuestion,
     library: Library,
-    written: Callable[[str, Refuted, ClaimText, Step], Module] = trace_module,
+    print_module: Callable[[str, TraceStatement, ClaimText, DerivationStep], Module] = trace_module,
 ) -> CoqModule:
-    """A trace as ``written`` with a derivation that a claim is false on it, or why there is none."""
+    """Return the module of a trace with a derivation that a claim is false on it, or the reason why not."""
     try:
-        what = refuted(asked, library)
+        statement = trace_statement(question, library)
     except RoadproofError as error:
-        return without_question(error)
-    world = what.world
+        return refused_module(error)
+    world = statement.world
     try:
-        printed = trace_claim(what)
-        formula = with_values(numbered(what.formula, what.trace), world.values)
-        derivation = derive_on(TraceShapes(world.values, what), f.Not(formula), world.road, world.lanes)
-        return CoqModule(written(name, what, printed, derivation))
+        printed = trace_claim_text(statement)
+        formula = with_values(with_trace_values(statement.formula, statement.trace), world.values)
+        derivation = derive_on(TraceShapes(world.values, statement), f.Not(formula), world.road, world.lanes)
+        return CoqModule(print_module(name, statement, printed, derivation))
     except NoDerivationError as error:
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, Why.NO_DERIVATION(error)))
+        return CoqModule(None, refusal=KernelRuling(KernelVerdict.UNKNOWN, ReasonKind.NO_DERIVATION(error)))
     except RoadproofError as error:
-        return without_text(error)
+        return unprintable_module(error)

@@ -1,7 +1,7 @@
-"""What proofs/kernel/Signs.v and Shown.v accept of comparisons on an interval, said in Python beforehand.
+"""A prediction of the comparisons on an interval that proofs/kernel/Signs.v and Shown.v accept.
 
-Nothing rests on it: where it says yes too often Coq refuses, and where it says no too often a derivation is
-longer, or is not found.
+Not trusted: if it accepts too much, Coq refuses; if it accepts too little, a derivation is longer or not
+found.
 """
 
 from abc import ABC, abstractmethod
@@ -21,24 +21,24 @@ from roadproof.semantics.exact.algebraic import Root, real_roots
 from roadproof.semantics.exact.polynomial import (
     ONE,
     ZERO,
-    Polynomial,
+    TimePolynomial,
     add,
     multiply,
     negate,
     polynomial,
     primitive,
 )
-from roadproof.semantics.exact.signals import Courses, DriveSignals, compare_truth, course
+from roadproof.semantics.exact.signals import DriveSignals, TermPieces, compare_truth, signal_polynomial
 from roadproof.semantics.exact.truth import Cut, TruthSet
 from roadproof.world.drive import Drive, value_at
-from roadproof.world.motion import State, starts_of
+from roadproof.world.motion import State, piece_starts
 from roadproof.world.road import Lanelet
 from roadproof.world.signals import SIZES
 
 
 @dataclass(frozen=True)
-class Part:
-    """What lies between two cuts at rational instants; ``end`` None is for ever."""
+class TimePart:
+    """The times between two cuts at rational instants; ``end`` None is unbounded."""
 
     begin: Cut
     end: Cut | None
@@ -52,24 +52,24 @@ class Part:
         return None if self.end is None else rational_of(self.end)
 
     def has_inside(self, time: Fraction) -> bool:
-        """Whether cutting just before ``time`` leaves something on both sides."""
+        """Return whether a cut just before ``time`` leaves something on both sides."""
         before = Cut(time, False)
         return self.begin < before and (self.end is None or before < self.end)
 
-    def cut(self, times: list[Fraction]) -> "list[Part]":
-        """The parts between ascending instants inside."""
+    def cut(self, times: list[Fraction]) -> "list[TimePart]":
+        """Return the parts between ascending instants inside."""
         cuts = [self.begin, *(Cut(x, False) for x in times)]
-        return [Part(*pair) for pair in pairwise([*cuts, self.end])]  # type: ignore[arg-type]
+        return [TimePart(*pair) for pair in pairwise([*cuts, self.end])]  # type: ignore[arg-type]
 
-    def around(self, times: list[Fraction]) -> "list[Part]":
-        """The parts before, at and after ascending instants."""
+    def around(self, times: list[Fraction]) -> "list[TimePart]":
+        """Return the parts before, at and after ascending instants."""
         cuts = [x for time in times for x in (Cut(time, False), Cut(time, True))]
         inside = [x for x in cuts if self.begin < x and (self.end is None or x < self.end)]
-        return [Part(*pair) for pair in pairwise([self.begin, *inside, self.end])]  # type: ignore[arg-type]
+        return [TimePart(*pair) for pair in pairwise([self.begin, *inside, self.end])]  # type: ignore[arg-type]
 
 
 def rational_of(cut: Cut) -> Fraction:
-    """The instant of a cut. Raises ``ValueError`` where it is irrational."""
+    """Return the instant of a cut. Raises ``ValueError`` if it is irrational."""
     if isinstance(cut.point, Root):
         raise ValueError("a part of a derivation ends at rational instants")
     return cut.point
@@ -78,40 +78,40 @@ def rational_of(cut: Cut) -> Fraction:
 # --- polynomials -----------------------------------------------------------------------------------
 
 
-def scale(factor: Fraction, p: Polynomial) -> Polynomial:
+def scale(factor: Fraction, p: TimePolynomial) -> TimePolynomial:
     return multiply(polynomial(factor), p)
 
 
-def subtract(p: Polynomial, q: Polynomial) -> Polynomial:
+def subtract(p: TimePolynomial, q: TimePolynomial) -> TimePolynomial:
     return add(p, negate(q))
 
 
-def _shifted(by: Fraction, p: Polynomial) -> Polynomial:
-    found = ZERO
+def _shifted(by: Fraction, p: TimePolynomial) -> TimePolynomial:
+    result = ZERO
     for x in reversed(p.coefficients):
-        found = add(polynomial(x), multiply(polynomial(by, 1), found))
-    return found
+        result = add(polynomial(x), multiply(polynomial(by, 1), result))
+    return result
 
 
-def _bernstein(width: Fraction, p: Polynomial) -> list[Fraction]:
-    """As Signs.v has it."""
-    found: list[Fraction] = []
+def _bernstein(width: Fraction, p: TimePolynomial) -> list[Fraction]:
+    """Return the Bernstein coefficients of a polynomial on [0, width], by the algorithm of Signs.v."""
+    coefficients: list[Fraction] = []
     ones = [Fraction(1)]
-    for x in reversed(p.coefficients):
-        raised = [Fraction(0), *found]
-        found = [x * one + more for one, more in zip(ones, raised, strict=True)]
+    for coefficient in reversed(p.coefficients):
+        raised = [Fraction(0), *coefficients]
+        coefficients = [coefficient * one + more for one, more in zip(ones, raised, strict=True)]
         ones = [(a + b) / width for a, b in zip([Fraction(0), *ones], [*ones, Fraction(0)], strict=True)]
-    return found
+    return coefficients
 
 
 @dataclass
 class Signs:
-    """Signs of polynomials on parts; ``tested`` are those that were asked for."""
+    """The signs of polynomials on parts; ``tested``: the polynomials that were queried."""
 
-    tested: set[Polynomial] = field(default_factory=set)
+    tested: set[TimePolynomial] = field(default_factory=set)
 
-    def above(self, strict: bool, p: Polynomial, part: Part) -> bool:
-        """Whether Signs.v says that ``p`` is positive (or not negative) in all of ``part``."""
+    def above(self, strict: bool, p: TimePolynomial, part: TimePart) -> bool:
+        """Return whether Signs.v recognises ``p`` as positive (or not negative) in all of ``part``."""
         self.tested.add(p)
         moved = _shifted(part.start, p)
         if part.end is None or part.stop is None:
@@ -133,15 +133,15 @@ class Signs:
         )
 
 
-def splits(tested: set[Polynomial], part: Part) -> list[Fraction]:
-    """Rational instants inside ``part`` at which a polynomial, or how fast it grows, changes its sign."""
-    found: set[Fraction] = set()
+def splits(tested: set[TimePolynomial], part: TimePart) -> list[Fraction]:
+    """Return rational instants inside ``part`` at which a polynomial or its derivative changes its sign."""
+    instants: set[Fraction] = set()
     for p in tested:
         for q in (p.numerators, tuple(place * x for place, x in enumerate(p.numerators))[1:]):
             if 1 < len(q) <= 3:
                 roots = real_roots(primitive(q))
-                found |= {x for x, _ in roots if not isinstance(x, Root) and part.has_inside(x)}
-    return sorted(found)
+                instants |= {x for x, _ in roots if not isinstance(x, Root) and part.has_inside(x)}
+    return sorted(instants)
 
 
 # --- a drive ---------------------------------------------------------------------------------------
@@ -149,52 +149,53 @@ def splits(tested: set[Polynomial], part: Part) -> list[Fraction]:
 
 @dataclass
 class Shapes(ABC):
-    """Signals as polynomials of time; ``values``: of parameters."""
+    """Signals as polynomials of time, on a drive or trace; ``values``: of parameters."""
 
     values: Mapping[str, Fraction]
 
     @property
     def loop(self) -> Loop | None:
-        """How signals repeat for ever, where they do; then all that is asked lies in the first round."""
+        """The loop of the signals, if they repeat; then only times in the first round are queried."""
         return None
 
     @abstractmethod
     def knots(self, leaf: t.Leaf) -> list[Fraction]:
-        """The instants from which on a leaf may change in another way than before."""
+        """Return the instants at which the polynomial of a leaf may change."""
 
     @abstractmethod
     def steps(self, leaf: t.Leaf) -> list[Fraction]:
-        """The instants at which a leaf may be what it is neither before nor after."""
+        """Return the instants at which a leaf may have a value of its own, unlike before and after."""
 
     @abstractmethod
-    def signal(self, signal: t.Varying, part: Part) -> Polynomial:
-        """On a part without a knot or a step inside."""
+    def signal(self, signal: t.Varying, part: TimePart) -> TimePolynomial:
+        """Return the polynomial of a signal on a part without a knot or step inside."""
 
     @abstractmethod
     def size(self, size: t.Size) -> Fraction: ...
 
     @abstractmethod
     def when(self, compared: Compare) -> TruthSet:
-        """When a comparison is true."""
+        """Return the times at which a comparison is true."""
 
-    def term(self, term: Term, part: Part, signs: Signs) -> list[Polynomial]:
-        """Polynomials of which one is the term at each instant; none where it cannot be said."""
+    def term(self, term: Term, part: TimePart, signs: Signs) -> list[TimePolynomial]:
+        """Return polynomials of which one equals the term at each instant; empty if that is unknown."""
 
         def all_of(
-            terms: tuple[Term, ...], join: Callable[[Polynomial, Polynomial], list[Polynomial]]
-        ) -> list[Polynomial]:
-            found = self.term(terms[0], part, signs)
+            terms: tuple[Term, ...], join: Callable[[TimePolynomial, TimePolynomial], list[TimePolynomial]]
+        ) -> list[TimePolynomial]:
+            """Return the combinations of the polynomials of several terms."""
+            results = self.term(terms[0], part, signs)
             for other in terms[1:]:
                 more = self.term(other, part, signs)
-                found = [r for p, q in product(found, more) for r in join(p, q)]
-            return found
+                results = [r for p, q in product(results, more) for r in join(p, q)]
+            return results
 
         match term:
             case t.Number(value, _):
                 return [polynomial(value)]
             case t.Parameter(name, _):
                 return [polynomial(self.values[name])]
-            case t.Signal() | t.Own():
+            case t.Signal() | t.CustomSignal():
                 return [self.signal(term, part)]
             case t.Size():
                 return [polynomial(self.size(term))]
@@ -213,13 +214,13 @@ class Shapes(ABC):
                 return all_of(terms, lambda p, q: self._extreme(p, q, part, signs))
             case t.Minimum(terms):
                 return all_of(terms, lambda p, q: self._extreme(q, p, part, signs, least=True))
-            case _:
+            case t.Variable() | t.Inverse():
                 return []
 
     @staticmethod
     def _extreme(
-        p: Polynomial, q: Polynomial, part: Part, signs: Signs, least: bool = False
-    ) -> list[Polynomial]:
+        p: TimePolynomial, q: TimePolynomial, part: TimePart, signs: Signs, least: bool = False
+    ) -> list[TimePolynomial]:
         difference = subtract(q, p) if least else subtract(p, q)
         if signs.above(False, difference, part):
             return [p]
@@ -230,40 +231,42 @@ class Shapes(ABC):
 
 @dataclass
 class DriveShapes(Shapes):
-    """Those of a drive."""
+    """The signals of a drive."""
 
     drive: Drive
     _starts: dict[str, tuple[State, ...]] = field(default_factory=dict)
 
     @cached_property
-    def courses(self) -> Courses:
-        return Courses(DriveSignals(self.drive))
+    def courses(self) -> TermPieces:
+        return TermPieces(DriveSignals(self.drive))
 
     def when(self, compared: Compare) -> TruthSet:
         return compare_truth(self.courses, compared.left, compared.op, compared.right)
 
     def starts(self, vehicle: str) -> tuple[State, ...]:
         if vehicle not in self._starts:
-            self._starts[vehicle] = starts_of(self.drive.vehicles[vehicle])
+            self._starts[vehicle] = piece_starts(self.drive.vehicles[vehicle])
         return self._starts[vehicle]
 
     def knots(self, leaf: t.Leaf) -> list[Fraction]:
+        """Return the instants at which the polynomial of a leaf may change."""
         match leaf:
             case t.Signal(_, vehicle):
                 return [x.time for x in self.starts(vehicle)[1:]]
-            case t.Own(name, vehicle):
-                return [start for start, _ in self.drive.own[name, vehicle][1:]]
-            case _:
+            case t.CustomSignal(name, vehicle):
+                return [start for start, _ in self.drive.custom_signals[name, vehicle][1:]]
+            case t.Number() | t.Parameter() | t.Variable() | t.Size():
                 return []
 
     def steps(self, leaf: t.Leaf) -> list[Fraction]:
         return []
 
-    def signal(self, signal: t.Varying, part: Part) -> Polynomial:
-        if isinstance(signal, t.Own):
-            return polynomial(value_at(self.drive.own[signal.name, signal.vehicle], part.start))
+    def signal(self, signal: t.Varying, part: TimePart) -> TimePolynomial:
+        """Return the polynomial of a signal on a part without a knot or step inside."""
+        if isinstance(signal, t.CustomSignal):
+            return polynomial(value_at(self.drive.custom_signals[signal.name, signal.vehicle], part.start))
         starts = self.starts(signal.vehicle)
-        return course(signal.name, [state for state in starts if state.time <= part.start][-1])
+        return signal_polynomial(signal.name, [state for state in starts if state.time <= part.start][-1])
 
     def size(self, size: t.Size) -> Fraction:
         return self.courses.signals.size(size)
@@ -278,26 +281,29 @@ _MIRRORED: Mapping[Comparison, tuple[bool, bool]] = {
 }
 
 
-def compares(shapes: Shapes, left: Term, op: Comparison, right: Term, part: Part, signs: Signs) -> bool:
-    """Whether Shown.v says that the comparison is true in all of ``part``."""
+def compares(shapes: Shapes, left: Term, op: Comparison, right: Term, part: TimePart, signs: Signs) -> bool:
+    """Return whether Shown.v recognises a comparison as true in all of ``part``."""
     strict, exchanged = _MIRRORED[op]
     one, other = (right, left) if exchanged else (left, right)
     inverse = isinstance(one, t.Inverse), isinstance(other, t.Inverse)
-    ps = shapes.term(one.term if isinstance(one, t.Inverse) else one, part, signs)
-    qs = shapes.term(other.term if isinstance(other, t.Inverse) else other, part, signs)
-    return bool(ps and qs) and all(
+    left_polynomials = shapes.term(one.term if isinstance(one, t.Inverse) else one, part, signs)
+    right_polynomials = shapes.term(other.term if isinstance(other, t.Inverse) else other, part, signs)
+    return bool(left_polynomials and right_polynomials) and all(
         any(
             all(signs.above(strictly, r, part) for strictly, r in case)
             for case in _cases(inverse, strict, p, q)
         )
-        for p, q in product(ps, qs)
+        for p, q in product(left_polynomials, right_polynomials)
     )
 
 
 def _cases(
-    inverse: tuple[bool, bool], strict: bool, p: Polynomial, q: Polynomial
-) -> Iterator[tuple[tuple[bool, Polynomial], ...]]:
-    """What has to be positive (strictly, where true) for p < q or p <= q, as ``in_order`` has it."""
+    inverse: tuple[bool, bool], strict: bool, p: TimePolynomial, q: TimePolynomial
+) -> Iterator[tuple[tuple[bool, TimePolynomial], ...]]:
+    """Yield alternatives of polynomials that must be positive (strictly if True) for p < q or p <= q.
+
+    The alternatives are those of ``in_order`` in Shown.v.
+    """
     match inverse:
         case (False, False):
             yield ((strict, subtract(q, p)),)
@@ -307,14 +313,16 @@ def _cases(
         case (True, False):
             yield (True, p), (strict, subtract(multiply(p, q), ONE))
             yield (True, negate(p)), (strict, subtract(ONE, multiply(p, q)))
-        case _:
+        case (True, True):
             yield (False, q), (strict, subtract(p, q))
             yield (True, negate(p)), (strict, subtract(p, q))
             yield (True, negate(p)), (False, q)
 
 
-def _said_of(shapes: Shapes, compared: Compare, part: Part, changing: Polynomial, above: bool) -> bool | None:
-    """What a comparison is in ``part`` where ``changing`` is above 0, or is not; None: open."""
+def _known_truth(
+    shapes: Shapes, compared: Compare, part: TimePart, changing: TimePolynomial, above: bool
+) -> bool | None:
+    """Return the truth of a comparison, given whether ``changing`` is above 0; None if unknown."""
     left = shapes.term(compared.left, part, Signs())
     right = shapes.term(compared.right, part, Signs())
     if len(left) != 1 or len(right) != 1:
@@ -338,13 +346,13 @@ def _said_of(shapes: Shapes, compared: Compare, part: Part, changing: Polynomial
 
 
 def occupies(
-    shapes: Shapes, vehicle: str, lanelet: Lanelet, positive: bool, part: Part, signs: Signs
+    shapes: Shapes, vehicle: str, lanelet: Lanelet, positive: bool, part: TimePart, signs: Signs
 ) -> bool:
-    """Whether Shown.v says that the box is in the lanelet (or is not) in all of ``part``."""
+    """Return whether Shown.v recognises that the box is in the lanelet (or is not) in all of ``part``."""
     along, across = (shapes.signal(x, part) for x in (t.Signal("s", vehicle), t.Signal("d", vehicle)))
     length, width = (polynomial(shapes.size(t.Size(x, vehicle))) for x in SIZES)
     low, high = lanelet.s
-    edges: list[Polynomial] = []
+    edges: list[TimePolynomial] = []
     if low is not None:
         edges.append(subtract(along, polynomial(low)))
     if high is not None:
@@ -356,8 +364,10 @@ def occupies(
     return any(signs.above(False, negate(p), part) for p in edges)
 
 
-def assume(shapes: Shapes, formula: Formula, part: Part, changing: Polynomial, above: bool) -> Formula:
-    """``formula`` with what the sign of a polynomial says of its comparisons at the same instant."""
+def assume(
+    shapes: Shapes, formula: Formula, part: TimePart, changing: TimePolynomial, above: bool
+) -> Formula:
+    """Return the formula with the comparisons decided by the sign of a polynomial replaced by their truth."""
     match formula:
         case f.Compare():
             leaves = {*leaves_of(formula)}
@@ -365,10 +375,10 @@ def assume(shapes: Shapes, formula: Formula, part: Part, changing: Polynomial, a
                 len(part.around(shapes.steps(leaf))) > 1 for leaf in leaves
             ):
                 return formula
-            said = _said_of(shapes, formula, part, changing, above)
-            return formula if said is None else f.Truth(said)
+            truth = _known_truth(shapes, formula, part, changing, above)
+            return formula if truth is None else f.Truth(truth)
         case f.Not() | f.And() | f.Or() | f.Some() | f.Every():
             inside = (assume(shapes, x, part, changing, above) for x in f.children(formula))
             return f.with_children(formula, tuple(inside))
-        case _:
+        case f.Truth() | f.Occupies() | f.Until() | f.Eventually() | f.Always() | f.Application():
             return formula

@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from roadproof.extensions.maps.options import Road
+from roadproof.extensions.maps.options import RoadOptions
 from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.progress import warn
 from roadproof.verdict import ExitCode
@@ -30,7 +30,7 @@ examples:
   roadproof witness cut-in --road 'town.xodr#road=12,lanes=left'
   roadproof witness cut-in --road 'USA_US101-3_3_T-1.xml#road=1,to=150'
 """
-OPTIONS = Road
+OPTIONS = RoadOptions
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,15 +38,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.extensions.maps.roads import as_data, left_out_of, stretches
+    from roadproof.extensions.maps.roads import as_data, omission_notes, stretches
 
-    found = stretches(args.map, args.out, args.strict)
-    for told in left_out_of(args.map, found):
-        warn(f"note: {told}")
+    listed = stretches(args.map, args.out, args.strict)
+    for note in omission_notes(args.map, listed):
+        warn(f"note: {note}")
     if args.json:
-        write_json(as_data(args.map, found), args.json)
+        write_json(as_data(args.map, listed), args.json)
     if args.json != "-":
-        print("\n".join(line for stretch in found for line in _lines(stretch, "#" in args.map)))
+        print("\n".join(line for stretch in listed for line in _lines(stretch, "#" in args.map)))
         if args.out:
             print(f"drawn to {args.out}")
     return ExitCode.AS_EXPECTED

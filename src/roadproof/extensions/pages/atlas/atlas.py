@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import Unpack
 
 from roadproof.extensions.pages.atlas import overview_pages as overviews
-from roadproof.extensions.pages.atlas.answers import EVIDENCE, Answers, ask
-from roadproof.extensions.pages.atlas.pictures import DrivePicture, draw_all
+from roadproof.extensions.pages.atlas.answers import EVIDENCE, Answers, answer_topics
+from roadproof.extensions.pages.atlas.pictures import AtlasPicture, draw_all
 from roadproof.extensions.pages.atlas.scenario_page import scenario_values
 from roadproof.extensions.pages.keywords import AtlasKeywords
 from roadproof.extensions.pages.page.templates import render, style_without_scripts
-from roadproof.extensions.pages.settings import Atlas as Settings
+from roadproof.extensions.pages.settings import AtlasSettings as Settings
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.settings.option import takes
-from roadproof.runtime.files import make_folder, write_whole
+from roadproof.runtime.files import make_folder, write_atomic
 from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
 
@@ -24,7 +24,7 @@ STYLE = "atlas.css"
 
 @dataclass(frozen=True)
 class Atlas:
-    """The pages that were written, and how many drives they show."""
+    """The pages that were written, and the number of drives on them."""
 
     folder: Path
     pages: tuple[str, ...]
@@ -48,25 +48,25 @@ class Atlas:
 def atlas(using: Definitions | None = None, **options: Unpack[AtlasKeywords]) -> Atlas:
     """Write static pages about all scenarios into the folder ``out``, with evidence for each statement.
 
-    ``among``: scenarios such as "1,3-8" (all where None); ``topics``: what is asked about them (all), such
-    as "proofs", "drives" or "overlaps". Known answers take seconds; others are computed, which can take long.
-    Raises ``InputError``, ``UsageError``.
+    ``among``: scenarios such as "1,3-8" (all where None); ``topics``: the questions to ask (all by default),
+    such as "proofs", "drives" or "overlaps". Known answers take seconds; others are computed, which can take
+    long. Raises ``InputError``, ``UsageError``.
     """
-    given = Settings.of(options)
-    answers = ask(using or load(), using is None, given)
-    drawn = draw_all(answers, given)
+    settings = Settings.of(options)
+    answers = answer_topics(using or load(), using is None, settings)
+    pictures = draw_all(answers, settings)
     make_folder(answers.folder)
-    pages = tuple(_write(answers, drawn))
-    return Atlas(answers.folder, pages, len(drawn))
+    pages = tuple(_write(answers, pictures))
+    return Atlas(answers.folder, pages, len(pictures))
 
 
-def _write(answers: Answers, drawn: dict[str, DrivePicture]) -> Iterator[str]:
+def _write(answers: Answers, pictures: dict[str, AtlasPicture]) -> Iterator[str]:
     """Write the pages, and yield their names."""
     folder = answers.folder
     style = resources.files("roadproof.extensions.pages.atlas").joinpath(STYLE).read_text("utf-8")
-    write_whole(folder / STYLE, (style_without_scripts() + style).encode())
+    write_atomic(folder / STYLE, (style_without_scripts() + style).encode())
     if answers.diagram is not None:
-        write_whole(folder / "implications.svg", answers.diagram.svg)
+        write_atomic(folder / "implications.svg", answers.diagram.svg)
     shared = {
         "answers": answers,
         "page_of": overviews.page_of,
@@ -74,22 +74,24 @@ def _write(answers: Answers, drawn: dict[str, DrivePicture]) -> Iterator[str]:
         "set": answers.home.alone.set_name,
         "check": f"roadproof check {EVIDENCE}",
     }
-    for name, template, values in _pages(answers, drawn):
+    for name, template, values in _pages(answers, pictures):
         text = render(f"atlas/{template}.html", page=name, **shared, **values)
-        write_whole(folder / name, text.encode())
+        write_atomic(folder / name, text.encode())
         yield name
 
 
-def _pages(answers: Answers, drawn: dict[str, DrivePicture]) -> Iterator[tuple[str, str, dict[str, object]]]:
-    """Name, template and values of each page."""
-    yield "index.html", "index", overviews.front_values(answers, drawn)
+def _pages(
+    answers: Answers, pictures: dict[str, AtlasPicture]
+) -> Iterator[tuple[str, str, dict[str, object]]]:
+    """Yield the name, template and values of each page."""
+    yield "index.html", "index", overviews.front_values(answers, pictures)
     if answers.overlap is not None:
         yield "overlaps.html", "overlaps", overviews.overlap_values(answers)
     if answers.order is not None:
         yield "implications.html", "implications", overviews.implication_values(answers)
     if answers.classes is not None:
-        yield "classes.html", "classes", overviews.class_values(answers, drawn)
+        yield "classes.html", "classes", overviews.class_values(answers, pictures)
     if answers.coverage is not None:
-        yield "gaps.html", "gaps", overviews.gap_values(answers, drawn)
+        yield "gaps.html", "gaps", overviews.gap_values(answers, pictures)
     for number in answers.numbers:
-        yield overviews.page_of(number), "scenario", scenario_values(answers, drawn, number)
+        yield overviews.page_of(number), "scenario", scenario_values(answers, pictures, number)

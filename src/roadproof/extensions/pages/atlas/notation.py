@@ -1,4 +1,4 @@
-"""Formulas as HTML in the notation of the paper: its signs, names in italics with indices."""
+"""Renders formulas as HTML in the notation of the paper: its signs, and names in italics with indices."""
 
 import re
 from collections.abc import Callable, Collection
@@ -34,43 +34,43 @@ _TOKEN = re.compile(
 )
 
 
-def as_html(tree: Expression | Claim, linked: Collection[str] = (), before: str = "") -> str:
-    """A formula as HTML. Names of definitions that are ``linked`` lead to the id ``before`` + name."""
-    return shown(text(tree), linked, before)
+def as_html(tree: Expression | Claim, linked: Collection[str] = (), id_prefix: str = "") -> str:
+    """Return a formula as HTML; names in ``linked`` link to the id ``id_prefix`` + name."""
+    return text_as_html(text(tree), linked, id_prefix)
 
 
 def head_as_html(definition: Definition) -> str:
-    """The name of a definition with its parameters."""
-    names = ", ".join(_name(x.name) for x in definition.parameters)
-    return f"{_name(definition.name)}({names})"
+    """Return the name of a definition with its parameters as HTML."""
+    names = ", ".join(_name_as_html(x.name) for x in definition.parameters)
+    return f"{_name_as_html(definition.name)}({names})"
 
 
-def shown(written: str, linked: Collection[str] = (), before: str = "") -> str:
-    """As ``as_html``, of a formula as text."""
+def text_as_html(formula: str, linked: Collection[str] = (), id_prefix: str = "") -> str:
+    """Return the text of a formula as HTML; names in ``linked`` link to the id ``id_prefix`` + name."""
 
     def name(word: str) -> str:
-        made = _name(word)
-        return f'<a href="#{before}{escape(word)}">{made}</a>' if word in linked else made
+        made = _name_as_html(word)
+        return f'<a href="#{id_prefix}{escape(word)}">{made}</a>' if word in linked else made
 
-    return "".join(_token(x, name) for x in _TOKEN.finditer(written))
+    return "".join(_token_as_html(x, name) for x in _TOKEN.finditer(formula))
 
 
-def _token(found: re.Match[str], name: Callable[[str], str]) -> str:
-    word = found[0]
-    match found.lastgroup:
+def _token_as_html(token: re.Match[str], name: Callable[[str], str]) -> str:
+    word = token[0]
+    match token.lastgroup:
         case "bounds":
-            inner = "".join(_token(x, name) for x in _TOKEN.finditer(word[2:-1]))
+            inner = "".join(_token_as_html(x, name) for x in _TOKEN.finditer(word[2:-1]))
             return f"{_TEMPORAL[word[0]]}<sub>[{inner}]</sub>"
         case "name" | "sign":
             return _TEMPORAL.get(word) or _SIGNS.get(word) or name(word)
         case "space":
             return " "
-        case _:
+        case _:  # open: names of groups of the pattern, here number and other
             return escape(word)
 
 
-def _name(word: str) -> str:
-    """A name with its indices below, and the spec set above."""
+def _name_as_html(word: str) -> str:
+    """Return a name with its indices as subscripts and the spec set as superscript."""
     stem, _, above = word.partition("@")
     stem, *below = [x for x in stem.split("_") if x] or [stem]
     numbered = re.fullmatch(r"([A-Za-z]+)(\d+)", stem)

@@ -1,4 +1,4 @@
-"""All drives of the atlas as moving pictures, with their figures, drawn by several processes."""
+"""Draws all drives of the atlas as moving pictures with their figures, in several processes."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
@@ -9,9 +9,9 @@ from pathlib import Path
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.pages.atlas.answers import EVIDENCE, OBJECTIVES, Answers, name_in
-from roadproof.extensions.pages.atlas.notation import shown
+from roadproof.extensions.pages.atlas.notation import text_as_html
 from roadproof.extensions.pages.miniature import miniature, small_scene
-from roadproof.extensions.pages.settings import Atlas
+from roadproof.extensions.pages.settings import AtlasSettings
 from roadproof.frontends.report.drive_data import Span, strips_of
 from roadproof.library.specification import Library
 from roadproof.runtime import pool
@@ -21,9 +21,11 @@ MOST_STRIPS, DEEPEST = 14, 2
 
 
 @dataclass(frozen=True)
-class Figures:
-    """A drive in numbers: speeds of each vehicle at the start and the end in m/s, gaps to SV along the road
-    at the start and at least, in m, and when danger begins, in s.
+class DriveFigures:
+    """The figures of a drive.
+
+    ``speeds``: of each vehicle at the start and the end (m/s). ``gaps``: along the road from SV to each other
+    vehicle, at the start and the smallest (m). ``begins``: the start of danger (s).
     """
 
     speeds: Mapping[str, tuple[float, float]]
@@ -32,43 +34,43 @@ class Figures:
 
 
 @dataclass(frozen=True)
-class DrivePicture:
-    """A picture as SVG with what a page tells about it.
+class AtlasPicture:
+    """A drive as a moving SVG picture, with the facts that a page shows about it.
 
-    ``still``: the instant at which it stands, in s; ``strips``: parts of the formula as HTML, in how many
-    others each is, and when it is true, in s.
+    ``duration``: of one loop (s); ``still``: the instant of the picture at rest (s); ``strips``: parts of the
+    formula as HTML, their depth in it, and the spans in which they are true (s).
     """
 
     svg: str
     horizon: float
-    lasts: float
+    duration: float
     still: float
-    figures: Figures
+    figures: DriveFigures
     strips: Sequence[tuple[str, int, Sequence[Span]]]
 
 
 @dataclass(frozen=True)
-class _Job:
+class _PictureJob:
     path: Path
     name: str
-    told: str
+    title: str
 
 
-def draw_all(answers: Answers, given: Atlas) -> dict[str, DrivePicture]:
-    """Every picture by the file of its drive, relative to the pages.
+def draw_all(answers: Answers, settings: AtlasSettings) -> dict[str, AtlasPicture]:
+    """Return every picture, by the file of its drive relative to the pages.
 
     Raises ``RejectedError`` where the judge rejects a drive, whatever an index says of it.
     """
-    told = dict(_drives(answers))
-    jobs = [_Job(answers.folder / file, f"m{k}", x) for k, (file, x) in enumerate(told.items())]
+    titles = dict(_drives(answers))
+    jobs = [_PictureJob(answers.folder / file, f"m{k}", x) for k, (file, x) in enumerate(titles.items())]
     draw = partial(_draw, answers.library or answers.home.library)
-    with closing(pool.work(draw, jobs, given.jobs, None, given.progress, "pictures")) as done:
-        found = dict(done)
-    return {file: found[k] for k, file in enumerate(told)}
+    with closing(pool.work(draw, jobs, settings.jobs, None, settings.progress, "pictures")) as numbered:
+        pictures = dict(numbered)
+    return {file: pictures[k] for k, file in enumerate(titles)}
 
 
 def _drives(answers: Answers) -> Iterator[tuple[str, str]]:
-    """The files of all drives, each in words."""
+    """Yield the file and a title of each drive."""
     for objective in OBJECTIVES:
         for number, drive in answers.drives.get(objective, {}).items():
             yield drive.source.file, f"A {objective} drive of {answers.home.words(number)}"
@@ -86,14 +88,14 @@ def _drives(answers: Answers) -> Iterator[tuple[str, str]]:
             )
 
 
-def _draw(library: Library, job: _Job) -> DrivePicture:
+def _draw(library: Library, job: _PictureJob) -> AtlasPicture:
     file = load_drive(job.path)
     judged = JudgedDrive(file, library)
     scene, strips = small_scene(file, library), strips_of(judged.judgement, file.horizon)
     speeds = {name: (float(x[0].v_lon), float(x[-1].v_lon)) for name, x in scene.states.items()}
     gaps = {x.other: (x.gap[0], min(x.gap)) for x in scene.distances}
-    figures = Figures(speeds, gaps, scene.begins)
-    parts = [(shown(x.name), x.depth, x.spans) for x in strips if x.depth <= DEEPEST][:MOST_STRIPS]
-    svg = miniature(scene, job.name, job.told)
+    figures = DriveFigures(speeds, gaps, scene.begins)
+    parts = [(text_as_html(x.name), x.depth, x.spans) for x in strips if x.depth <= DEEPEST][:MOST_STRIPS]
+    svg = miniature(scene, job.name, job.title)
     still = float(scene.times[scene.still])
-    return DrivePicture(svg, float(file.horizon), float(scene.lasts), still, figures, parts)
+    return AtlasPicture(svg, float(file.horizon), float(scene.duration), still, figures, parts)

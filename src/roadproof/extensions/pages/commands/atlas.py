@@ -1,10 +1,10 @@
-"""``roadproof atlas``: static pages about all scenarios, with the evidence for each statement."""
+"""``roadproof atlas``: write static pages about all scenarios, with the evidence for each statement."""
 
 import argparse
 
-from roadproof.extensions.pages.settings import Atlas
+from roadproof.extensions.pages.settings import AtlasSettings
 from roadproof.frontends.cli.basis import read_definitions
-from roadproof.frontends.cli.options import read_hands
+from roadproof.frontends.cli.options import read_executor
 from roadproof.frontends.cli.progress import Counter, clear
 from roadproof.frontends.settings.flags import read_keywords
 
@@ -19,16 +19,16 @@ examples:
 The pages need no network and no scripts. Known answers take seconds; others are computed, often for long.
 `roadproof check atlas/evidence` checks the evidence again.
 """
-OPTIONS = Atlas
+OPTIONS = AtlasSettings
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.extensions.pages.atlas.atlas import atlas
 
-    home = read_definitions(args, Atlas)
+    home = read_definitions(args, AtlasSettings)
     changed = args.specs or args.readings or home.sets != ("base",)
-    keywords = read_keywords(args, Atlas) | {"jobs": read_hands(args), "progress": Counter()}
-    found = atlas(home if changed else None, **keywords)
+    keywords = read_keywords(args, AtlasSettings) | {"jobs": read_executor(args), "progress": Counter()}
+    written = atlas(home if changed else None, **keywords)
     clear()
-    print(found)
-    return found.exit_code
+    print(written)
+    return written.exit_code

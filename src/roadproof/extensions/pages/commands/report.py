@@ -1,9 +1,9 @@
-"""``roadproof report``: results of any kind as one page that needs no network."""
+"""``roadproof report``: present results of any kind as one page that needs no network."""
 
 import argparse
 from pathlib import Path
 
-from roadproof.extensions.pages.settings import Page
+from roadproof.extensions.pages.settings import PageSettings
 from roadproof.frontends.cli.progress import Counter, clear
 from roadproof.frontends.settings.flags import read_keywords, section
 
@@ -18,7 +18,7 @@ examples:
 Evidence is checked again while the page is made, as by `roadproof check`, and each claim says what was found.
 The page is one file: it opens without a server, prints, and follows the system's choice of light or dark.
 """
-OPTIONS = Page
+OPTIONS = PageSettings
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from roadproof.extensions.pages.reporting import page
 
-    found = page(*args.results, out=args.out, **read_keywords(args, Page) | {"progress": Counter()})
+    written = page(*args.results, out=args.out, **read_keywords(args, PageSettings) | {"progress": Counter()})
     clear()
-    print(found)
-    return found.exit_code
+    print(written)
+    return written.exit_code

@@ -1,4 +1,4 @@
-"""``roadproof studio``: a page in the browser in which formulas are written and tried."""
+"""``roadproof studio``: a page in the browser for writing and trying formulas."""
 
 import argparse
 from pathlib import Path
@@ -23,23 +23,23 @@ OPTIONS = settings.Studio
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(quiet=True)  # how far it is, the page says
-    told = (
+    help_text = (
         "a .spec file, drive or certificate (.json), samples (.csv, .xosc), the files of a recording, or a "
         "folder of drives and definitions (default: the working folder)"
     )
-    parser.add_argument("files", metavar="FILE", nargs="*", type=Path, help=told)
+    parser.add_argument("files", metavar="FILE", nargs="*", type=Path, help=help_text)
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.errors import UsageError
-    from roadproof.extensions.pages.studio.pages import begin_with, found_in
-    from roadproof.extensions.pages.studio.server import Studio, serve
+    from roadproof.extensions.pages.studio.pages import read_folder, read_start_files
+    from roadproof.extensions.pages.studio.server import StudioServer, serve
     from roadproof.verdict import ExitCode
 
     if args.port is not None and not 0 <= args.port < 65536:
         raise UsageError(f"--port {args.port}: write a number from 1 to 65535, or 0 for any that is free")
-    begun = begin_with(args.files) if args.files else found_in(Path.cwd())
-    serve(Studio(begun), args.port, args.browser, _say)
+    content = read_start_files(args.files) if args.files else read_folder(Path.cwd())
+    serve(StudioServer(content), args.port, args.browser, _say)
     return ExitCode.AS_EXPECTED
 
 

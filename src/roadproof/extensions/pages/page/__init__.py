@@ -1,1 +1,1 @@
-"""The HTML page of saved answers, with matrices, plates and a viewer of drives."""
+"""Report pages: one HTML file of saved answers, with matrices, plates and a drive viewer."""

@@ -1,4 +1,6 @@
-"""Values of the section of claims: template properties, a grid of those about scenarios, and each claim."""
+"""The template values of claims: template properties, a matrix of scenarios and properties, and
+each claim.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -7,24 +9,24 @@ from roadproof.engines.prove.properties import OWN, find_task
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.strict import Fields
+from roadproof.extensions.pages.page.matrix import Heading, Linked, Matrix
 from roadproof.extensions.pages.page.page_context import PageContext
-from roadproof.extensions.pages.page.results import Result, Words
-from roadproof.frontends.report.sheet import Heading, Linked, Matrix
-from roadproof.library.motion import statement
+from roadproof.extensions.pages.page.results import PageResult, Words
+from roadproof.library.assumption import claim_statement
 from roadproof.library.words import spans
-from roadproof.questions.prove import ClaimData, ClaimsData
+from roadproof.questions.prove_data import ClaimData, ClaimsData
 from roadproof.verdict import Verdict
 
 LEAST_SCENARIOS = 3
-"""The grid has the properties of at least so many scenarios."""
+"""The smallest number of scenarios for which the matrix shows a property."""
 
 
 @dataclass(frozen=True)
 class ShownClaim:
-    """A claim with what was found of its evidence, and the drive that refutes it.
+    """A claim with the finding about its evidence, and the drive that refutes it.
 
-    ``id``: the property of the list, empty for a claim of the user; ``title``: what it says, in words;
-    ``place``: where it is on the page.
+    ``id``: its listed property, empty for a claim of the user; ``title``: its statement in words; ``place``:
+    its id on the page.
     """
 
     verdict: Verdict
@@ -41,34 +43,34 @@ class ShownClaim:
 
     @property
     def label(self) -> str:
-        """Property, part and scenario, such as ``P1 4``."""
+        """The property, part and scenario, such as ``P1 4``."""
         return " ".join(filter(None, (self.name, "" if self.scenario is None else str(self.scenario))))
 
     @property
     def name(self) -> str:
-        """Property and part, such as ``P8-rear``."""
+        """The property and part, such as ``P8-rear``."""
         return "-".join(filter(None, (self.id, self.part)))
 
     @property
     def outcome(self) -> str:
-        """What was found of its evidence, in a word."""
+        """The outcome of checking its evidence, empty without evidence."""
         return "" if self.finding is None else str(self.finding.outcome)
 
 
-def claims(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """The answer of ``prove``."""
+def claims(result: PageResult, context: PageContext, words: Words) -> dict[str, object]:
+    """Return the values for an answer of ``prove``."""
     shown = [*shown_claims(result, context)]
     listed = [x for x in shown if x.id]
     return {
         "claims": shown,
         "accepted": sum(x.outcome == Acceptance.ACCEPTED for x in shown),
         "properties": _properties(listed),
-        "matrix": _grid(listed, words),
+        "matrix": _matrix(listed, words),
     }
 
 
-def shown_claims(result: Result, context: PageContext) -> Iterator[ShownClaim]:
-    """The claims of a result, in its order. Raises ``InputError``."""
+def shown_claims(result: PageResult, context: PageContext) -> Iterator[ShownClaim]:
+    """Yield the claims of a result, in order. Raises ``InputError``."""
     for k, x in enumerate(read(ClaimsData, result.data, result.name).verdicts):
         finding = context.finding(result.folder, x.evidence)
         task = find_task(x.claim, x.set)
@@ -80,7 +82,7 @@ def shown_claims(result: Result, context: PageContext) -> Iterator[ShownClaim]:
             title="" if task is None else task.title,
             scenario=x.scenario,
             set=x.set,
-            claim=statement(x.assuming, x.claim),
+            claim=claim_statement(x.assuming, x.claim),
             finding=finding,
             drive=_drive_against(x),
             place=f"claim-{result.id}-{k}",
@@ -108,20 +110,23 @@ class ListedProperty:
 
     @property
     def scenarios(self) -> str:
-        """The scenarios of which it was asked, such as ``1-3, 7``."""
+        """The scenarios for which it was asked, such as ``1-3, 7``."""
         return spans({x.scenario for x in self.claims if x.scenario is not None})
 
 
 def _properties(listed: Sequence[ShownClaim]) -> list[ListedProperty]:
-    """A row for each property, in the order of the result."""
+    """Return a row for each property, in the order of the result."""
     groups: dict[tuple[str, str], list[ShownClaim]] = {}
     for x in listed:
         groups.setdefault((x.name, x.title), []).append(x)
-    return [ListedProperty(name, title, found) for (name, title), found in groups.items()]
+    return [ListedProperty(name, title, claims) for (name, title), claims in groups.items()]
 
 
-def _grid(listed: Sequence[ShownClaim], words: Words) -> Matrix | None:
-    """A row for each scenario, a column for each property and set; None where no property has enough."""
+def _matrix(listed: Sequence[ShownClaim], words: Words) -> Matrix | None:
+    """Return the matrix with a row for each scenario and a column for each property and set.
+
+    None where no property has enough scenarios.
+    """
     about: dict[str, set[int]] = {}
     for x in listed:
         if x.scenario is not None:
@@ -137,7 +142,7 @@ def _grid(listed: Sequence[ShownClaim], words: Words) -> Matrix | None:
     }
     return Matrix(
         [Heading(n, n, words.get(n)) for n in sorted({x.scenario for x in wide if x.scenario is not None})],
-        [Heading((name, of), of) for name, found in sets.items() for of in found],
+        [Heading((name, of), of) for name, set_names in sets.items() for of in set_names],
         cells,
-        [(name, len(found)) for name, found in sets.items()],
+        [(name, len(set_names)) for name, set_names in sets.items()],
     )

@@ -1,4 +1,4 @@
-"""What a page shows once and refers to: drives with their viewers, and what was found of evidence."""
+"""The shared content of a report page: drives with their viewers, and the findings about evidence."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.strict import read_json
 from roadproof.extensions.pages.miniature import miniature, small_scene
 from roadproof.extensions.pages.viewer_data import ShownFormula, viewer_data
-from roadproof.extensions.pages.viewer_document import Document, FormulaView, Span
+from roadproof.extensions.pages.viewer_document import FormulaView, TruthSpan, ViewerDocument
 from roadproof.library.specification import Library
 
 MOST_STRIPS = 14
@@ -18,46 +18,46 @@ _NEARLY = 1e-6  # s: instants are told with so many digits
 
 
 @dataclass(frozen=True)
-class ShownDrive:
+class PageDrive:
     """A drive on the page.
 
-    ``number``: that of its ``document`` for the viewer; ``wrong``: the formulas that are not true on it;
-    ``svg``: a small moving picture of it; ``fault``: why it cannot be shown.
+    ``number``: that of its ``document`` for the viewer; ``wrong``: messages about formulas that are not true
+    on it; ``svg``: a small moving picture of it; ``fault``: why it cannot be shown.
     """
 
     number: int = 0
-    document: Document | None = None
+    document: ViewerDocument | None = None
     wrong: Sequence[str] = ()
     svg: str = ""
     fault: str = ""
 
     @property
     def title(self) -> str:
-        """What the viewer calls it."""
+        """The title of the drive in the viewer."""
         return "" if self.document is None else self.document.title
 
     @property
     def scenario(self) -> int | None:
-        """The scenario that its file names, if any."""
+        """The scenario that its file names, None for none."""
         file = None if self.document is None else self.document.file
         number = file.get("scenario") if isinstance(file, Mapping) else None
         return number if isinstance(number, int) else None
 
     @property
-    def strips(self) -> list[tuple[str, Sequence[Span]]]:
-        """When the parts of its formula that have a name are true."""
+    def strips(self) -> list[tuple[str, Sequence[TruthSpan]]]:
+        """The named parts of its formula with the spans in which they are true."""
         parts = None if self.document is None else self.document.formulas[0].parts
         return [(x.text, x.true) for x in parts or () if x.op == "name"][:MOST_STRIPS]
 
 
 @dataclass(frozen=True)
 class DriveCard:
-    """A drive in a gallery: what it shows with which verdict, and what was checked of it.
+    """A drive in a gallery: the claim that it shows, the verdict, and notes on its check.
 
-    ``place``: where it is on the page.
+    ``place``: its id on the page.
     """
 
-    drive: ShownDrive
+    drive: PageDrive
     verdict: str
     claim: str
     place: str
@@ -66,46 +66,49 @@ class DriveCard:
 
 @dataclass
 class PageContext:
-    """``documents`` of the viewer, in the order in which drives are met; ``findings`` of evidence by file.
+    """The ``documents`` of the viewer, in order of appearance, and the ``findings`` on evidence by file.
 
-    ``rejected``: what is wrong with a question itself, by its path.
+    ``rejected``: the objections to a question itself, by its path.
     """
 
     library: Library
     findings: Mapping[Path, Finding] = field(default_factory=dict)
     rejected: Mapping[str, Sequence[str]] = field(default_factory=dict)
-    documents: list[Document] = field(default_factory=list)
+    documents: list[ViewerDocument] = field(default_factory=list)
 
     def drive(
         self,
         file: Path | Mapping[str, object],
-        asked: Sequence[ShownFormula] = (),
-        since: Sequence[float] = (0.0,),
-        put: Callable[[DriveFile], DriveFile] = lambda file: file,
-    ) -> ShownDrive:
-        """Put a drive on the page, or say why it is not shown.
+        formulas: Sequence[ShownFormula] = (),
+        hold_at: Sequence[float] = (0.0,),
+        adapt: Callable[[DriveFile], DriveFile] = lambda file: file,
+    ) -> PageDrive:
+        """Add a drive to the page, or return why it cannot be shown.
 
-        ``asked``: other formulas than its own, of which the k-th has to hold at the instant (s) that is
-        k-th of ``since``; ``put``: what the drive is read as.
+        Args:
+          file: a drive file or its plain data.
+          formulas: formulas to show instead of its own.
+          hold_at: the instant (s) at which each formula has to hold.
+          adapt: a function that changes the drive file before it is judged.
         """
         try:
             content = read_json(file) if isinstance(file, Path) else file
-            drive = put(read_drive(content, str(file) if isinstance(file, Path) else "the drive"))
-            document = viewer_data(drive, self.library, asked)
+            drive = adapt(read_drive(content, str(file) if isinstance(file, Path) else "the drive"))
+            document = viewer_data(drive, self.library, formulas)
             svg = miniature(small_scene(drive, self.library), f"m{len(self.documents)}", document.title)
         except (RoadproofError, OSError) as error:
-            return ShownDrive(fault=str(error))
+            return PageDrive(fault=str(error))
         self.documents.append(document)
-        wrong = [_wrong(x, at) for x, at in zip(document.formulas, since, strict=False)]
-        return ShownDrive(len(self.documents) - 1, document, [x for x in wrong if x], svg)
+        wrong = [_failure(x, at) for x, at in zip(document.formulas, hold_at, strict=False)]
+        return PageDrive(len(self.documents) - 1, document, [x for x in wrong if x], svg)
 
     def is_drive(self, file: Path) -> bool:
-        """Whether a file of evidence is a drive."""
-        found = self.findings.get(file.resolve())
-        return found is not None and found.kind == "drive"
+        """Return whether a file of evidence is a drive."""
+        finding = self.findings.get(file.resolve())
+        return finding is not None and finding.kind == "drive"
 
     def rejected_in(self, folder: Path | None) -> int:
-        """How much of the evidence in a folder is not accepted."""
+        """Return how many pieces of evidence in a folder are not accepted."""
         if folder is None:
             return 0
         here = folder.resolve()
@@ -113,26 +116,26 @@ class PageContext:
         return sum(path.parent == here for path in wrong)
 
     def drives_of(self, folder: Path | None, claim: str) -> Iterator[Finding]:
-        """What was found of the drives of a folder that are about a claim, by the names of their files."""
+        """Yield the findings about drives in a folder that show a claim, sorted by file name."""
         here = None if folder is None else folder.resolve()
-        for path, found in sorted(self.findings.items(), key=lambda x: (len(x[0].name), x[0])):
-            if path.parent == here and found.claim == claim and found.kind == "drive":
-                yield found
+        for path, finding in sorted(self.findings.items(), key=lambda x: (len(x[0].name), x[0])):
+            if path.parent == here and finding.claim == claim and finding.kind == "drive":
+                yield finding
 
     def finding(self, folder: Path | None, name: object) -> Finding | None:
-        """What was found of a file of evidence that an answer names."""
+        """Return the finding about a file of evidence that an answer names, None where there is none."""
         if folder is None or not isinstance(name, str):
             return None
         return self.findings.get((folder / name).resolve())
 
 
-def _wrong(shown: FormulaView, at: float) -> str:
-    """Why a formula cannot be read, or that it is false at an instant; nothing where it is true."""
-    if shown.error:
-        return shown.error
-    if at == 0 and shown.holds:
+def _failure(view: FormulaView, at: float) -> str:
+    """Return why a formula cannot be read, or that it is false at an instant; empty where it is true."""
+    if view.error:
+        return view.error
+    if at == 0 and view.holds:
         return ""
-    spans = shown.parts[0].true if at and shown.parts else ()
+    spans = view.parts[0].true if at and view.parts else ()
     if any(x.begin <= at + _NEARLY and (x.end is None or at <= x.end + _NEARLY) for x in spans):
         return ""
     when = f" at {at:g} s" if at else ""

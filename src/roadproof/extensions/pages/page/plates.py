@@ -1,27 +1,25 @@
-"""Plates on a page."""
+"""The template values of plates: diagrams of two initial values in which collisions are unpreventable."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
 from roadproof.evidence.codec import read
-from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, Quantity
+from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, InitialQuantity
 from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.drivers.preventable.data import PlateData, PreventableData
 from roadproof.extensions.drivers.preventable.report import measured
 from roadproof.extensions.drivers.words import legend
 from roadproof.extensions.pages.page.page_context import PageContext
-from roadproof.extensions.pages.page.results import Result, Words
+from roadproof.extensions.pages.page.results import PageResult, Words
 from roadproof.runtime.records import dataclass
 from roadproof.world.units import UNITS
 
 _WIDE, _HIGH, _LEFT, _BELOW = 300.0, 190.0, 34.0, 28.0  # of a plate in px, and the room for its numbers
-_TOKENS = {"careful": "one", "r157": "two", "eu1426": "three", "rss": "four", "fsm": "open"}
-"""The colours of models on pages, as names of the design."""
 
 
-def page_plates(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """Plates, in ``groups`` of the same fixed values."""
+def plate_values(result: PageResult, context: PageContext, words: Words) -> dict[str, object]:
+    """Return the plates, in ``groups`` with equal fixed values."""
     index = read(PreventableData, result.data, result.name)
     quantities = MANOEUVRES[index.manoeuvre].quantities
     groups: dict[tuple[tuple[str, str], ...], list[PlateData]] = {}
@@ -40,12 +38,12 @@ def page_plates(result: Result, context: PageContext, words: Words) -> dict[str,
 
 
 def plane_of(index: PreventableData) -> "_Plane":
-    """The two initial values that vary on the plates of an answer."""
+    """Return the plane of the two initial values that vary on the plates of an answer."""
     return _Plane(MANOEUVRES[index.manoeuvre].quantities, index.along, index.across)
 
 
 def _colour(model: str) -> str:
-    return f"var(--{_TOKENS.get(model, 'faint')})"
+    return MODELS[model].colour[1] if model in MODELS else "var(--faint)"
 
 
 class _Span(NamedTuple):
@@ -58,15 +56,17 @@ class _Span(NamedTuple):
 
 
 class _Area(NamedTuple):
-    """What is unpreventable for a model: spans of lines, and the points of their first and last ends."""
+    """The unpreventable area of a driver model: spans of lines, and the points of their first and
+    last ends.
+    """
 
     colour: str
     spans: Sequence[_Span]
     edges: Sequence[Sequence[str]]
 
 
-class _Drawing(NamedTuple):
-    """Areas, and the numbers at the ends of the axes."""
+class _PlateDrawing(NamedTuple):
+    """The areas, and the numbers at the ends of the axes."""
 
     areas: Sequence[_Area]
     low: str
@@ -79,29 +79,29 @@ class _Drawing(NamedTuple):
 class _Plane:
     """The two initial values that vary: ``along`` a line from left to right, ``across`` lines upwards."""
 
-    quantities: Mapping[str, Quantity]
+    quantities: Mapping[str, InitialQuantity]
     along: Sequence[str]
     across: Sequence[str]
 
     def known(self, values: Mapping[str, str]) -> dict[str, str]:
-        """The values of the manoeuvre's own quantities."""
+        """Return the values of the manoeuvre's own quantities."""
         return {name: x for name, x in values.items() if name in self.quantities}
 
     def measured(self, name: str, value: str) -> str:
-        """A value in the unit of its quantity."""
+        """Return a value in the unit of its quantity."""
         return measured(self.quantities[name], Fraction(value)) if name in self.quantities else value
 
     def label(self, name: str) -> str:
-        """The name of an axis, with its unit."""
+        """Return the name of an axis with its unit."""
         return f"{name} [{self._unit(name)}]"
 
-    def drawn(self, plates: Sequence[PlateData]) -> _Drawing:
-        """Plates over each other."""
+    def drawn(self, plates: Sequence[PlateData]) -> _PlateDrawing:
+        """Return the drawing of plates over each other."""
         low, high = (float(Fraction(x)) for x in self.along[1:])
         rows = [float(Fraction(line.at)) for x in plates for line in x.lines] or [0.0, 1.0]
         frame = _Frame((low, high), (min(rows), max(rows)))
         ends = (self._number(self.along[0], low), self._number(self.along[0], high))
-        return _Drawing(
+        return _PlateDrawing(
             [_area(x, frame) for x in plates], *ends, *(self._number(self.across[0], x) for x in frame.across)
         )
 
@@ -114,7 +114,7 @@ class _Plane:
 
 @dataclass(frozen=True)
 class _Frame:
-    """Where values are in a picture: those along a line from left to right, those of lines upwards."""
+    """The mapping of values to px: those along a line from left to right, those of lines upwards."""
 
     along: tuple[float, float]
     across: tuple[float, float]
@@ -128,7 +128,7 @@ class _Frame:
         return round((_HIGH - _BELOW) * (1 - (value - low) / (high - low or 1)), 2)
 
     def spans(self, plate: PlateData) -> Iterator[_Span]:
-        """What is unpreventable on each line: thin lines where nothing is said of what is between them."""
+        """Yield the unpreventable spans of each line; thin ones where nothing is claimed between lines."""
         thick = 1.2 if plate.stepped else (_HIGH - _BELOW) / max(1, len(plate.lines) - 1)
         for line in plate.lines:
             middle = self.y(float(Fraction(line.at)))
@@ -139,7 +139,7 @@ class _Frame:
                 yield _Span(left, round(top, 2), round(width, 2), round(bottom - top, 2))
 
     def edge(self, plate: PlateData, which: int) -> list[str]:
-        """The first (0) or last (-1) ends of all lines, where these are not ends of the range."""
+        """Return the first (0) or last (-1) ends of all lines, except those at an end of the range."""
         points = []
         for line in plate.lines:
             if line.unpreventable:

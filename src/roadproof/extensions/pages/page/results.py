@@ -1,4 +1,6 @@
-"""Which results are in files and folders: answers of ``--json``, folders of answers, evidence alone."""
+"""Reads the results in files and folders: answers of ``--json``, folders of answers, single files of
+evidence.
+"""
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,19 +14,19 @@ from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, read_json
 from roadproof.extensions.surveys.classify.question import ClassifyQuestion
 from roadproof.extensions.surveys.classify.shares import with_shares
 from roadproof.questions.checking import is_question, read_folder
-from roadproof.questions.data import QUESTION
+from roadproof.questions.question import QUESTION
 from roadproof.questions.views import view_data
 
 Words: TypeAlias = Mapping[int, str]
-"""What scenarios are called."""
+"""The names of scenarios by number."""
 TRAFFIC = "results.json"
 
 
 @dataclass(frozen=True)
-class Result:
-    """An answer as plain data; ``folder``: where the evidence lies that it names, None where it has none.
+class PageResult:
+    """An answer as plain data; ``folder``: the folder of its evidence, None without evidence.
 
-    ``id``: its place on the page. ``digest``: the SHA-256 of its file.
+    ``id``: its number on the page. ``digest``: the SHA-256 of its file.
     """
 
     name: str
@@ -36,71 +38,73 @@ class Result:
 
     @property
     def kind(self) -> str:
-        """``overlap`` of roadproof/overlap/1."""
+        """The kind of answer: ``overlap`` for schema roadproof/overlap/1."""
         return self.schema.split("/")[1] if self.schema.count("/") == 2 else self.schema
 
 
 @dataclass(frozen=True)
-class Given:
-    """``results``, in the order in which they were named, and files of ``evidence`` that are of none."""
+class PageSources:
+    """The ``results`` in the order of their paths, and files of ``evidence`` that belong to none of them."""
 
-    results: tuple[Result, ...]
+    results: tuple[PageResult, ...]
     evidence: tuple[Path, ...]
 
     @property
     def checkable(self) -> tuple[Path, ...]:
-        """What ``check`` reads: folders of answers, and files alone."""
+        """The folders and files that ``check`` can read."""
         folders = [x.folder for x in self.results if x.folder is not None and x.kind != "traffic-results"]
         return (*dict.fromkeys(folders), *self.evidence)
 
 
-def read_results(paths: Sequence[Path], given: Sequence[Path] = ()) -> Given:
-    """What is in files and folders. Raises ``InputError`` for what is not there, or is no result.
+def read_results(paths: Sequence[Path], specs: Sequence[Path] = ()) -> PageSources:
+    """Return the results and the evidence in files and folders.
 
-    ``given``: the specification files that it was made with.
+    ``specs``: the specification files that they were made with. Raises ``InputError`` for a missing file or
+    one that is no result.
     """
-    results: list[Result] = []
+    results: list[PageResult] = []
     evidence: list[Path] = []
     for path in paths:
         if not path.exists():
             raise InputError(f"{path} does not exist: name a file or a folder that a command has written")
-        found = [*_in_folder(path)] if path.is_dir() else [path]
-        if not found:
+        files = [*_result_files(path)] if path.is_dir() else [path]
+        if not files:
             raise InputError(
                 f"{path} holds no result: name a folder or a JSON answer that a command has written"
             )
-        for file in found:
+        for file in files:
             if file.name == QUESTION:
-                results.append(_answered(file.parent, given, len(results)))
+                results.append(_answered_question(file.parent, specs, len(results)))
                 continue
-            schema, data, digest = _read(file)
+            schema, data, digest = _read_result(file)
             if schema in SCHEMAS:
                 evidence.append(file)
             else:
-                here = file.parent if file.name == TRAFFIC else _beside(file)
+                here = file.parent if file.name == TRAFFIC else _evidence_folder(file)
                 name = file.parent.name if file.name == TRAFFIC else file.stem
-                results.append(Result(name or str(file), schema, data, here, len(results), digest))
-    return Given(tuple(results), tuple(dict.fromkeys(evidence)))
+                results.append(PageResult(name or str(file), schema, data, here, len(results), digest))
+    return PageSources(tuple(results), tuple(dict.fromkeys(evidence)))
 
 
-def _answered(folder: Path, given: Sequence[Path], number: int) -> Result:
-    """The view of a folder of answers."""
-    read = read_folder(folder, given)
-    data = view_data(read.question, read.answers, Path())
-    if read.question.kind == ClassifyQuestion.kind:
+def _answered_question(folder: Path, specs: Sequence[Path], number: int) -> PageResult:
+    """Return the combined answers of a folder as a result."""
+    stored = read_folder(folder, specs)
+    data = view_data(stored.question, stored.answers, Path())
+    schema = Fields(data, str(folder)).text("schema")
+    if stored.question.kind == ClassifyQuestion.kind:
         data = with_shares(data, folder)
     digest = hashlib.sha256((folder / QUESTION).read_bytes()).hexdigest()
-    return Result(folder.name or str(folder), str(data["schema"]), data, folder, number, digest)
+    return PageResult(folder.name or str(folder), schema, data, folder, number, digest)
 
 
-def _beside(file: Path) -> Path | None:
-    """The folder in which the evidence of an answer of ``--json`` lies."""
+def _evidence_folder(file: Path) -> Path | None:
+    """Return the folder with the evidence of an answer of ``--json``, None where there is none."""
     folder = file.with_name(f"{file.stem}-evidence")
     return folder if is_question(folder) else None
 
 
-def _in_folder(folder: Path) -> Iterator[Path]:
-    """The question of a folder, or its results; without these the evidence in it and below."""
+def _result_files(folder: Path) -> Iterator[Path]:
+    """Yield the question of a folder, or its results; without these, the evidence in it and below."""
     whole = folder / QUESTION if is_question(folder) else folder / TRAFFIC
     if whole.is_file():
         yield whole
@@ -109,13 +113,13 @@ def _in_folder(folder: Path) -> Iterator[Path]:
         if path.is_symlink():
             continue
         if path.is_dir():
-            yield from _in_folder(path)
+            yield from _result_files(path)
         elif path.suffix == ".json":
             yield path
 
 
-def _read(file: Path) -> tuple[str, Mapping[str, Json], str]:
-    """Schema, content, and SHA-256 of a file."""
+def _read_result(file: Path) -> tuple[str, Mapping[str, Json], str]:
+    """Return the schema, content and SHA-256 of a file."""
     data = Fields(read_json(file, LARGEST_INDEX), str(file))
     schema = data.text("schema") if "schema" in data.content else ""
     if not schema.startswith("roadproof/"):

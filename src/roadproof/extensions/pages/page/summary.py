@@ -1,4 +1,4 @@
-"""The summary at the head of a page: question and answer of each result, findings, and versions."""
+"""The summary at the top of a page: question and answer of each result, findings, and versions."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -9,8 +9,8 @@ from roadproof.engines.prove.properties import find_task
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding, summary
 from roadproof.evidence.strict import Json
-from roadproof.extensions.catalogue.kept import Figure
-from roadproof.extensions.pages.page.results import Result
+from roadproof.extensions.catalogue.catalogue_data import Figure
+from roadproof.extensions.pages.page.results import PageResult
 from roadproof.extensions.pages.page.templates import render
 from roadproof.frontends.report.sheet import excerpt
 from roadproof.library.words import spans
@@ -18,7 +18,7 @@ from roadproof.library.words import spans
 OPEN: Final = ("UNKNOWN", "NONE-WITHIN", "PROVED-BOUNDED", "VACUOUS", "CROSSCHECK-FAILED", "undecided")
 """Verdicts that leave a question open."""
 NOT_SHOWN: Final = ("unknown", "stale", "missing", "rejected", "refuted")
-"""States of requirements that evidence does not show."""
+"""The states of requirements that evidence does not show, ordered."""
 _SKIPPED = ("drive", "drives", "counterexample", "boundaries", "missed", "surely", "words")
 _ANCHORS = {
     ("index", "claims"): "claim",
@@ -31,30 +31,30 @@ _ANCHORS = {
     ("preventable", "plates"): "plate",
     ("preventable", "lemmas"): "lemma",
 }
-"""What the ids of entries begin with, by kind of result and field; other entries have no id of their own."""
+"""The prefixes of ids of entries, by kind of result and field; other entries have no id of their own."""
 
 _REMARKS = {"faults": "fault", "doubts": "doubt", "contradictions": "contradiction"}
-"""Remarks of a catalogue about its tests, which are to be read soon."""
+"""A catalogue's remarks about its tests, which deserve early attention."""
 
 
 @dataclass(frozen=True)
-class Statement:
-    """A verdict in words; ``target``: the part of the page with its evidence.
+class SummaryStatement:
+    """A verdict with its statement; ``target``: the id of the part of the page with its evidence.
 
-    ``expected``: of a claim whether the verdict is the one that was expected; None of other statements.
+    ``expected``: whether a claim has the expected verdict; None for other statements.
     """
 
     verdict: str
-    told: str
+    text: str
     target: str
     expected: bool | None = None
 
 
 @dataclass(frozen=True)
 class Overview:
-    """A section of the page in a line.
+    """The row of a section in the summary.
 
-    ``told``: counts in words; ``rejected``: how many reasons there are to reject its evidence; ``remarked``:
+    ``counts``: counts in words; ``rejected``: the number of reasons to reject its evidence; ``remarked``:
     whether tests have faults or situations are untested.
     """
 
@@ -63,8 +63,8 @@ class Overview:
     target: str
     name: str = ""
     subject: str = ""
-    told: str = ""
-    statements: Sequence[Statement] = ()
+    counts: str = ""
+    statements: Sequence[SummaryStatement] = ()
     rejected: int = 0
     remarked: bool = False
 
@@ -75,7 +75,7 @@ class Overview:
 
     @property
     def rank(self) -> int:
-        """How soon it is to be read: 0 where evidence is rejected, then refuted and open statements."""
+        """The urgency: 0 where evidence is rejected, 1 for surprising or open statements, else 2."""
         if self.rejected:
             return 0
         surprising = any(x.verdict == "REFUTED" and x.expected is False for x in self.statements)
@@ -83,21 +83,24 @@ class Overview:
         return 1 if surprising or self.remarked or is_open else 2
 
 
-def overview(result: Result, title: str, question: str, rejected: int = 0) -> Overview:
-    """A result in a line."""
-    found = [*_statements(result)]
+def overview(result: PageResult, title: str, question: str, rejected: int = 0) -> Overview:
+    """Return the row of a result in the summary."""
+    entries = [*_statements(result)]
     target = f"result-{result.id}"
-    statements = [Statement(_text(x, "verdict"), _told(x), at, _is_expected(x, result)) for x, at in found]
-    subject = _subject(result, [x for x, _ in found])
+    statements = [
+        SummaryStatement(_text(x, "verdict"), _statement_text(x), at, _is_expected(x, result))
+        for x, at in entries
+    ]
+    subject = _subject(result, [x for x, _ in entries])
     remarked = result.kind == "catalogue" and (
         any(result.data.get(key) for key in _REMARKS) or any(x.tested < x.total for x in _figures(result))
     )
-    told = _counts_of(result)
-    return Overview(title, question, target, result.name, subject, told, statements, rejected, remarked)
+    counts = _counts_of(result)
+    return Overview(title, question, target, result.name, subject, counts, statements, rejected, remarked)
 
 
-def _statements(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
-    """The entries that have a verdict, each with the id of the part of the page that shows it."""
+def _statements(result: PageResult) -> Iterator[tuple[Mapping[str, Json], str]]:
+    """Yield the entries that have a verdict, each with the id of its part of the page."""
     if result.kind in ("order", "trace"):
         yield from _implications(result) if result.kind == "order" else _requirements(result)
         return
@@ -109,52 +112,52 @@ def _statements(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
             entries = sorted(entries, key=lambda x: isinstance(x, dict) and x.get("redundant") is False)
         for k, entry in enumerate(entries):
             target = f"{prefix}-{result.id}-{k}" if prefix else f"result-{result.id}"
-            for x in () if key in _SKIPPED else _with_verdict(entry):
+            for x in () if key in _SKIPPED else _entries_with_verdict(entry):
                 count += 1
                 yield x, target
     if not count and isinstance(result.data.get("verdict"), str):
         yield result.data, f"result-{result.id}"
 
 
-def _requirements(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
-    """The requirements, whose state is their verdict."""
-    found = result.data.get("requirements")
-    for k, x in enumerate(found if isinstance(found, list) else []):
+def _requirements(result: PageResult) -> Iterator[tuple[Mapping[str, Json], str]]:
+    """Yield the requirements, with their states as verdicts."""
+    requirements = result.data.get("requirements")
+    for k, x in enumerate(requirements if isinstance(requirements, list) else []):
         if isinstance(x, dict):
-            told = f"{_text(x, 'id')}: {_text(x, 'title') or _text(x, 'text')}"
-            yield {"verdict": x.get("state"), "name": told}, f"requirement-{result.id}-{k}"
+            text = f"{_text(x, 'id')}: {_text(x, 'title') or _text(x, 'text')}"
+            yield {"verdict": x.get("state"), "name": text}, f"requirement-{result.id}-{k}"
 
 
-def _implications(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
+def _implications(result: PageResult) -> Iterator[tuple[Mapping[str, Json], str]]:
     for key, verdict in (("proved", "PROVED"), ("missing", "REFUTED"), ("doubts", "UNKNOWN")):
-        found = result.data.get(key)
-        for k, x in enumerate(found if isinstance(found, list) else []):
+        entries = result.data.get(key)
+        for k, x in enumerate(entries if isinstance(entries, list) else []):
             if isinstance(x, dict):
                 target = f"implied-{result.id}-{k}" if key == "proved" else f"result-{result.id}"
-                told = f"{x.get('from')} implies {x.get('to')}"
-                yield {"verdict": verdict, "name": told}, target
+                text = f"{x.get('from')} implies {x.get('to')}"
+                yield {"verdict": verdict, "name": text}, target
 
 
-def _with_verdict(value: Json) -> Iterator[Mapping[str, Json]]:
+def _entries_with_verdict(value: Json) -> Iterator[Mapping[str, Json]]:
     if isinstance(value, list):
         for x in value:
-            yield from _with_verdict(x)
+            yield from _entries_with_verdict(x)
     elif isinstance(value, dict) and isinstance(value.get("verdict"), str):
         yield value
     elif isinstance(value, dict):
         for key, x in value.items():
             if key not in _SKIPPED:
-                yield from _with_verdict(x)
+                yield from _entries_with_verdict(x)
 
 
 def _text(x: Mapping[str, Json], key: str) -> str:
-    """A field as text, empty where it is missing."""
-    found = x.get(key)
-    return "" if found is None else str(found)
+    """Return a field as text, empty where it is missing."""
+    value = x.get(key)
+    return "" if value is None else str(value)
 
 
-def _told(x: Mapping[str, Json]) -> str:
-    """An entry in words: of a claim its property, of a pair its scenarios, else a name or a formula."""
+def _statement_text(x: Mapping[str, Json]) -> str:
+    """Return an entry in words: a claim's property, a pair's scenarios, else a name or a formula."""
     scenario, reason, inside = _text(x, "scenario"), _text(x, "reason"), _text(x, "set")
     numbered = f"scenario {scenario}" if scenario else ""
     if _text(x, "property") not in ("", "claim"):
@@ -170,8 +173,10 @@ def _told(x: Mapping[str, Json]) -> str:
     return excerpt(f"{head}{of}{f': {reason}' if reason else ''}", 240)
 
 
-def _is_expected(x: Mapping[str, Json], result: Result) -> bool | None:
-    """Whether a claim has the verdict that the answer or the list of properties expects."""
+def _is_expected(x: Mapping[str, Json], result: PageResult) -> bool | None:
+    """Return whether a claim has the verdict that the answer or the list of properties expects; None for
+    other entries.
+    """
     if result.kind not in ("index", "verdicts"):
         return None
     if isinstance(x.get("expected"), str):
@@ -180,12 +185,14 @@ def _is_expected(x: Mapping[str, Json], result: Result) -> bool | None:
     return task is not None and not x.get("assuming") and task.expected == x.get("verdict")
 
 
-def _subject(result: Result, statements: Iterable[Mapping[str, Json]]) -> str:
-    """What a result speaks of: scenarios, spec sets, recordings."""
+def _subject(result: PageResult, statements: Iterable[Mapping[str, Json]]) -> str:
+    """Return the scenarios and spec sets that a result is about."""
     entries = [result.data, *statements]
     settings = result.data.get("settings")
     entries += [settings] if isinstance(settings, dict) else []
-    numbers = {n for x in entries for key in ("scenario", "scenarios", "a", "b") for n in _whole(x.get(key))}
+    numbers = {
+        n for x in entries for key in ("scenario", "scenarios", "a", "b") for n in _integers(x.get(key))
+    }
     sets = [y for x in entries for key in ("set", "sets", "set_a", "set_b") for y in _texts(x.get(key))]
     named = dict.fromkeys(sets)
     parts = [f"scenario{'s' if len(numbers) > 1 else ''} {spans(numbers)}"] if numbers else []
@@ -193,28 +200,28 @@ def _subject(result: Result, statements: Iterable[Mapping[str, Json]]) -> str:
     return excerpt("; ".join(parts), 200)
 
 
-def _whole(value: Json) -> list[int]:
-    found = value if isinstance(value, list) else [value]
-    return [x for x in found if isinstance(x, int) and not isinstance(x, bool)]
+def _integers(value: Json) -> list[int]:
+    values = value if isinstance(value, list) else [value]
+    return [x for x in values if isinstance(x, int) and not isinstance(x, bool)]
 
 
 def _texts(value: Json) -> list[str]:
     return [x for x in (value if isinstance(value, list) else [value]) if isinstance(x, str)]
 
 
-def _counts_of(result: Result) -> str:
-    """Of recordings and catalogues, what was counted."""
+def _counts_of(result: PageResult) -> str:
+    """Return the counts of a catalogue or of recordings in words, empty for other results."""
     data = result.data
     if result.kind == "catalogue":
         counts = (("tests", "test"), *((key, words) for key, words in _REMARKS.items()))
-        found = [(len(x) if isinstance(x := data.get(key), list) else 0, words) for key, words in counts]
-        told = [f"{n} {_plural(words, n)}" for n, words in found if n]
-        told += [
+        totals = [(len(x) if isinstance(x := data.get(key), list) else 0, words) for key, words in counts]
+        parts = [f"{n} {_plural(words, n)}" for n, words in totals if n]
+        parts += [
             f"{x.total - x.tested} of {x.total} {x.kind} untested (set {x.set_name})"
             for x in _figures(result)
             if x.tested < x.total
         ]
-        return ", ".join(told)
+        return ", ".join(parts)
     if result.kind != "traffic-results":
         return ""
     table = data.get("table")
@@ -230,10 +237,10 @@ def _counts_of(result: Result) -> str:
     return excerpt("; ".join([read, *matches]), 300)
 
 
-def _figures(result: Result) -> list[Figure]:
-    """The figures of a catalogue for all road sectors."""
-    found = result.data.get("figures")
-    every = [read(Figure, x, result.name) for x in found] if isinstance(found, list) else []
+def _figures(result: PageResult) -> list[Figure]:
+    """Return the figures of a catalogue for all road sectors."""
+    figures = result.data.get("figures")
+    every = [read(Figure, x, result.name) for x in figures] if isinstance(figures, list) else []
     return [x for x in every if not x.sector]
 
 
@@ -245,38 +252,38 @@ def summary_section(
     overviews: Sequence[Overview],
     findings: Sequence[Finding],
     solver: str,
-    results: Sequence[Result],
+    results: Sequence[PageResult],
     lines: Iterable[tuple[str, str]],
 ) -> str:
-    """The head of a page as HTML: a row for each section, findings by importance, versions and digests.
+    """Return the summary as HTML: a row for each section, findings by importance, versions and digests.
 
     ``solver`` checked the ``findings``; ``lines`` are names with values that stand before the versions.
     """
-    said = [x for section in overviews for x in section.statements]
+    statements = [x for section in overviews for x in section.statements]
     return render(
         "summary.html",
         overviews=overviews,
         checked=summary(findings, solver) if any(x.kind != NO_EVIDENCE for x in findings) else "",
         remarked=[x for x in overviews if x.remarked],
         wrong=[x for x in findings if x.outcome is not Acceptance.ACCEPTED and x.kind != NO_EVIDENCE],
-        open=[x for x in said if x.verdict in OPEN],
+        open=[x for x in statements if x.verdict in OPEN],
         unshown=sorted(
-            (x for x in said if x.verdict in NOT_SHOWN), key=lambda x: -NOT_SHOWN.index(x.verdict)
+            (x for x in statements if x.verdict in NOT_SHOWN), key=lambda x: -NOT_SHOWN.index(x.verdict)
         ),
         traced=bool(results) and all(x.kind == "trace" for x in results),
-        refuted=[x for x in said if x.verdict == "REFUTED" and x.expected is False],
-        controls=[x for x in said if x.verdict == "REFUTED" and x.expected],
+        refuted=[x for x in statements if x.verdict == "REFUTED" and x.expected is False],
+        controls=[x for x in statements if x.verdict == "REFUTED" and x.expected],
         lines=[*lines, *_origins(results)],
         files=[(x.name, x.digest) for x in results],
     )
 
 
-def _origins(results: Sequence[Result]) -> Iterator[tuple[str, str]]:
-    """Versions, definitions and settings of results."""
+def _origins(results: Sequence[PageResult]) -> Iterator[tuple[str, str]]:
+    """Yield the versions, definitions and settings of results."""
     for name, key in (("results made by roadproof", "roadproof"), ("definitions", "library")):
-        found = dict.fromkeys(str(x.data[key]) for x in results if isinstance(x.data.get(key), str))
-        if found:
-            yield name, ", ".join(found)
+        values = dict.fromkeys(str(x.data[key]) for x in results if isinstance(x.data.get(key), str))
+        if values:
+            yield name, ", ".join(values)
     for options in dict.fromkeys(map(_equations, results)):
         if options:
             yield "readings", options
@@ -285,6 +292,6 @@ def _origins(results: Sequence[Result]) -> Iterator[tuple[str, str]]:
         yield "specification files", ", ".join(specs)
 
 
-def _equations(result: Result) -> str:
+def _equations(result: PageResult) -> str:
     options = result.data.get("options")
     return ", ".join(f"{k}={v}" for k, v in options.items()) if isinstance(options, dict) else ""

@@ -1,9 +1,9 @@
-// Tables of class "sheet" sort by the column whose heading is pressed; long ones have a box that filters rows.
+// Tables of class "sheet" sort by the column whose heading is clicked; long ones have a box that filters rows.
 
 const LONG = 8;
 const collator = new Intl.Collator("en", { numeric: true, sensitivity: "base" });
 
-/** Compares texts: as numbers where both begin with one; empty ones are last. */
+/** Compare texts, as numbers where both begin with one; empty ones are last. */
 function compare(a, b) {
   if (!a || !b) return Number(!a) - Number(!b);
   const between = parseFloat(a) - parseFloat(b);
@@ -38,13 +38,13 @@ function makeFilter(table) {
   Object.assign(box, { type: "search", className: "filter", placeholder: "Filter", ariaLabel: "Filter the rows" });
   const count = document.createElement("output");
   const show = () => {
-    const wanted = box.value.trim().toLowerCase();
+    const filter = box.value.trim().toLowerCase();
     let left = 0;
     for (const [row, text] of rows) {
-      row.hidden = !text.includes(wanted);
+      row.hidden = !text.includes(filter);
       left += Number(!row.hidden);
     }
-    count.textContent = wanted ? `${left} of ${rows.length} rows` : "";
+    count.textContent = filter ? `${left} of ${rows.length} rows` : "";
   };
   box.addEventListener("input", show);
   // A link may lead to a row that is filtered out.

@@ -1,6 +1,6 @@
-"""The page and its templates: this module alone imports jinja2, and only when a page is written.
+"""Renders pages from templates; the only module that imports jinja2, and only when a page is written.
 
-A page is one file with styles, scripts, viewers and all texts, which asks nobody for anything.
+A page is one file with styles, scripts, viewers and all texts; it loads nothing from a network.
 """
 
 from collections import Counter
@@ -20,13 +20,13 @@ import gzip
 import json
 from importlib import resources
 
-from roadproof.extensions.pages.viewer_document import Document
+from roadproof.extensions.pages.viewer_document import ViewerDocument
 from roadproof.extensions.pages.viewer_page import as_url, design, hash_of, viewer_modules, viewer_style
 from roadproof.frontends.report.sheet import excerpt
 
 
 class Sign(NamedTuple):
-    """How a verdict is drawn: a sign that needs no colour, and the class of its colour."""
+    """The sign of a verdict, which is readable without colour, and its colour class."""
 
     text: str
     colour: str
@@ -56,22 +56,22 @@ SIGNS: Mapping[str, Sign] = {
 
 
 def sign(verdict: object) -> Sign:
-    """The sign of a verdict."""
+    """Return the sign of a verdict."""
     return SIGNS.get(str(verdict), _UNKNOWN)
 
 
 def counted(verdicts: Iterable[object]) -> list[tuple[str, int]]:
-    """How often each verdict occurs."""
+    """Return how often each verdict occurs."""
     return [*Counter(map(str, verdicts)).items()]
 
 
 def in_unit(value: str, unit: str = "") -> str:
-    """A rational as a decimal, with its unit."""
+    """Return a rational as a decimal with its unit."""
     return f"{show(Fraction(value))} {unit if unit != 'unitless' else ''}".rstrip()
 
 
 def notes(finding: Finding) -> str:
-    """What was checked of evidence, and what was not."""
+    """Return what was checked of evidence, and what was not."""
     if finding.kind == NO_EVIDENCE:
         return "there is no evidence for it"
     unchecked = f"not checked: {', '.join(finding.unchecked)}" if finding.unchecked else ""
@@ -79,14 +79,14 @@ def notes(finding: Finding) -> str:
 
 
 def short(value: object, most: int = 400) -> str:
-    """A value in a line."""
+    """Return a value in one line of at most ``most`` characters."""
     if isinstance(value, Mapping):
-        told = ", ".join(f"{k}={short(x, 80)}" for k, x in value.items())
+        text = ", ".join(f"{k}={short(x, 80)}" for k, x in value.items())
     elif isinstance(value, Sequence) and not isinstance(value, str):
-        told = ", ".join(short(x, 80) for x in value)
+        text = ", ".join(short(x, 80) for x in value)
     else:
-        told = "" if value is None else str(value)
-    return excerpt(told, most)
+        text = "" if value is None else str(value)
+    return excerpt(text, most)
 
 
 @cache
@@ -106,22 +106,22 @@ def _environment() -> "Environment":
 
 
 def style_without_scripts() -> str:
-    """Colours, fonts and verdicts for pages without scripts."""
+    """Return colours, fonts and verdict styles for pages without scripts."""
     return design() + _resource("pieces.css")
 
 
 def page_style() -> str:
-    """Styles of a page without viewers."""
+    """Return the styles of a page without viewers."""
     return "\n".join((design(), _resource("page.css"), _resource("pieces.css")))
 
 
 def render(template: str, **values: object) -> str:
-    """A template of the folder ``templates``, or of the atlas, as HTML; it escapes ``values``."""
+    """Return a template of the folder ``templates``, or of the atlas, as HTML with escaped ``values``."""
     return _environment().get_template(template).render(values)
 
 
-def page(title: str, summary: str, sections: Sequence[str], documents: Sequence[Document]) -> str:
-    """The page as a text; ``documents`` are those of the viewers, read by the browser one by one."""
+def page(title: str, summary: str, sections: Sequence[str], documents: Sequence[ViewerDocument]) -> str:
+    """Return the page as text; ``documents``: those of the viewers, which the browser unpacks one by one."""
     texts = {**viewer_modules(), "page/tables": _resource("tables.js")}
     modules = {name: as_url(text) for name, text in texts.items()}
     imports = json.dumps({"imports": modules})
@@ -131,7 +131,7 @@ def page(title: str, summary: str, sections: Sequence[str], documents: Sequence[
         title=title,
         summary=summary,
         sections=sections,
-        documents=[_packed(x) for x in documents],
+        documents=[_compressed(x) for x in documents],
         style="\n".join((viewer_style(), _resource("page.css"), _resource("pieces.css"))),
         imports=imports,
         script=script,
@@ -139,8 +139,8 @@ def page(title: str, summary: str, sections: Sequence[str], documents: Sequence[
     )
 
 
-def _packed(document: Document) -> str:
-    """A document as gzipped JSON in base64, which the browser unpacks when it is asked for."""
+def _compressed(document: ViewerDocument) -> str:
+    """Return a document as gzipped JSON in base64, which the browser unpacks on demand."""
     text = json.dumps(document.as_json(), ensure_ascii=False, separators=(",", ":"))
     return base64.b64encode(gzip.compress(utf8(text), mtime=0)).decode()
 

@@ -1,4 +1,4 @@
-"""Values of the sections of a page: matrices, recordings, and evidence that lies alone."""
+"""The template values of most sections: matrices, recordings, and single files of evidence."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -6,11 +6,12 @@ from dataclasses import replace
 
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.extensions.pages.page.matrix import Heading, Linked, Matrix
 from roadproof.extensions.pages.page.page_context import DriveCard, PageContext
-from roadproof.extensions.pages.page.results import Result, Words
+from roadproof.extensions.pages.page.results import PageResult, Words
 from roadproof.extensions.pages.page.templates import in_unit, notes
 from roadproof.extensions.surveys.classify.data import ClassesData
-from roadproof.extensions.surveys.coverage import kept as gaps
+from roadproof.extensions.surveys.coverage import schema as gaps
 from roadproof.extensions.surveys.explore.data import ExplorationData, ExploreData
 from roadproof.extensions.surveys.redundancy import RedundancyData
 from roadproof.extensions.surveys.report.classify import sheet_of
@@ -18,32 +19,31 @@ from roadproof.extensions.surveys.report.coverage import sheet_of as sheet_of_cl
 from roadproof.extensions.surveys.report.redundancy import sheet_of as sheet_of_changes
 from roadproof.extensions.traffic.answers import monitor
 from roadproof.extensions.traffic.answers import traffic as evaluations
-from roadproof.frontends.report.sheet import Heading, Linked, Matrix
 from roadproof.questions.order.data import OrderData
-from roadproof.questions.overlap import OverlapData
-from roadproof.questions.witness import WitnessData
+from roadproof.questions.overlap_data import OverlapData
+from roadproof.questions.witness_data import WitnessData
 
 
 def evidence(findings: Sequence[Finding]) -> dict[str, object]:
-    """The findings: those that are not accepted, and the others."""
+    """Return the findings, accepted and others."""
     accepted = [x for x in findings if x.outcome is Acceptance.ACCEPTED]
     return {"accepted": accepted, "wrong": [x for x in findings if x not in accepted]}
 
 
 def drives_alone(findings: Sequence[Finding], context: PageContext) -> list[DriveCard]:
-    """The accepted drives, each with what was checked."""
+    """Return a card for each accepted drive."""
     paths = {id(finding): path for path, finding in context.findings.items()}
-    wanted = [
+    drives = [
         x for x in findings if x.kind == "drive" and x.outcome is Acceptance.ACCEPTED and id(x) in paths
     ]
     return [
         DriveCard(context.drive(paths[id(x)]), x.verdict, x.claim, f"drive-{k}", notes(x))
-        for k, x in enumerate(wanted)
+        for k, x in enumerate(drives)
     ]
 
 
-def witnessed(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """The drives of ``witness --json`` as cards; ``without``: the verdicts that have none."""
+def witnessed(result: PageResult, context: PageContext, words: Words) -> dict[str, object]:
+    """Return the drives of ``witness --json`` as cards; ``without``: the verdicts without a drive."""
     answer = read(WitnessData, result.data, result.name)
     checked = {
         x: map(notes, context.drives_of(result.folder, x)) for x in {y.formula for y in answer.verdicts}
@@ -59,35 +59,35 @@ def witnessed(result: Result, context: PageContext, words: Words) -> dict[str, o
     return {"answer": answer, "cards": cards, "without": without}
 
 
-def overlap(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """Pairs of scenarios, and a matrix of them."""
-    found = read(OverlapData, result.data, result.name).verdicts
-    several = len({x for pair in found for x in (pair.set_a, pair.set_b)}) > 1
+def overlap(result: PageResult, context: PageContext, words: Words) -> dict[str, object]:
+    """Return pairs of scenarios and a matrix of them."""
+    pairs = read(OverlapData, result.data, result.name).verdicts
+    several = len({x for pair in pairs for x in (pair.set_a, pair.set_b)}) > 1
     names: dict[tuple[str, int], str] = {}
     cells: dict[tuple[object, object], Linked] = {}
-    for k, pair in enumerate(found):
+    for k, pair in enumerate(pairs):
         one, other = (
             names.setdefault((of if several else "", n), f"{n} {of if several else ''}".strip())
             for n, of in ((pair.a, pair.set_a), (pair.b, pair.set_b))
         )
-        told = f"{pair.a} and {pair.b}: {pair.verdict}"
-        cells[one, other] = Linked(pair.verdict, told, f"pair-{result.id}-{k}")
+        title = f"{pair.a} and {pair.b}: {pair.verdict}"
+        cells[one, other] = Linked(pair.verdict, title, f"pair-{result.id}-{k}")
         cells.setdefault((other, one), cells[one, other])
     ends = [(name, number) for (_, number), name in sorted(names.items())]
     heads = [Heading(name, name, words.get(number)) for name, number in ends]
-    return {"pairs": found, "matrix": Matrix(heads, heads, cells)}
+    return {"pairs": pairs, "matrix": Matrix(heads, heads, cells)}
 
 
-def coverage(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """Classes of gaps: a column for each scenario, a row for each part that is false."""
+def coverage(result: PageResult, context: PageContext, words: Words) -> dict[str, object]:
+    """Return a matrix of classes of gaps, with a column for each scenario and a row for each false part."""
     index = read(gaps.CoverageData, result.data, result.name)
     sheet = sheet_of_classes(index, words)
     cells: dict[tuple[object, object], Linked] = {}
     for k, x in enumerate(index.classes):
         numbers = f", gap {', '.join(map(str, x.gaps))}" if x.gaps else ""
         target = f"gap-{result.id}-{x.gaps[0]}" if x.gaps else f"class-{result.id}-{k}"
-        told = f"{x.description}: {x.verdict}{numbers}"
-        cells[(x.component, x.condition), x.scenario] = Linked(x.verdict, told, target)
+        title = f"{x.description}: {x.verdict}{numbers}"
+        cells[(x.component, x.condition), x.scenario] = Linked(x.verdict, title, target)
     scenarios = dict.fromkeys(x.scenario for x in index.classes)
     kinds = dict.fromkeys((x.component, x.condition) for x in index.classes)
     return {
@@ -101,8 +101,8 @@ def coverage(result: Result, context: PageContext, words: Words) -> dict[str, ob
     }
 
 
-def order(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """Implications, and a matrix of them."""
+def order(result: PageResult, context: PageContext, words: Words) -> dict[str, object]:
+    """Return implications and a matrix of them."""
     index = read(OrderData, result.data, result.name)
     numbers = {kind[0]: int(kind[0].partition("@")[0]) for kind in index.kinds}
     cells: dict[tuple[object, object], Linked] = {
@@ -116,8 +116,8 @@ def order(result: Result, context: PageContext, words: Words) -> dict[str, objec
         for k, x in enumerate(index.proved)
     }
     for x in index.missing:
-        told = f"{x.above} does not always imply {x.below}"
-        cells[x.pair] = Linked("REFUTED", told, f"against-{result.id}-{x.drives[0]}")
+        title = f"{x.above} does not always imply {x.below}"
+        cells[x.pair] = Linked("REFUTED", title, f"against-{result.id}-{x.drives[0]}")
     cells |= {(name, name): Linked("=", "itself", None) for name in numbers}
     heads = [Heading(name, name, words.get(number)) for name, number in numbers.items()]
     return {
@@ -129,17 +129,17 @@ def order(result: Result, context: PageContext, words: Words) -> dict[str, objec
     }
 
 
-def redundancy(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """Changes of scenarios, those that are needed last."""
-    found = read(RedundancyData, result.data, result.name).verdicts
-    entries = sorted(found, key=lambda x: x.redundant is False)
-    said = [x.redundant for x in entries]
+def redundancy(result: PageResult, context: PageContext, words: Words) -> dict[str, object]:
+    """Return changes of scenarios, with those that are needed last."""
+    changes = read(RedundancyData, result.data, result.name).verdicts
+    entries = sorted(changes, key=lambda x: x.redundant is False)
+    flags = [x.redundant for x in entries]
     sheet = sheet_of_changes(entries, words)
-    return {"sheet": sheet, "needed": said.count(False), "spare": said.count(True)}
+    return {"sheet": sheet, "needed": flags.count(False), "spare": flags.count(True)}
 
 
-def explored(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """Explorations, each with its map: a row for one parameter, a matrix for two."""
+def explored(result: PageResult, context: PageContext, words: Words) -> dict[str, object]:
+    """Return explorations, each with a matrix: one row for one parameter, a grid for two."""
     index = read(ExploreData, result.data, result.name)
     return {"explored": [(x, _map(x, f"{result.id}-{k}")) for k, x in enumerate(index.explored)]}
 
@@ -156,22 +156,24 @@ def _map(x: ExplorationData, place: str) -> Matrix:
     return Matrix([*rows.values()], [*columns.values()], cells)
 
 
-def classes(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """Classes; ``claims``: counted by kind."""
+def classes(result: PageResult, context: PageContext, words: Words) -> dict[str, object]:
+    """Return classes; ``claims``: counted by kind."""
     index = read(ClassesData, result.data, result.name)
     claims = Counter((x.kind, x.verdict) for x in index.claims)
     return {"answer": index, "sheet": sheet_of(index.classes), "claims": [*claims.items()]}
 
 
-def traffic(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """The results table of recordings; ``numbers``: those of its scenarios, as texts and numbers."""
-    answer = read(evaluations.Answer, result.data, result.name)
+def traffic(result: PageResult, context: PageContext, words: Words) -> dict[str, object]:
+    """Return the results table of recordings; ``numbers``: its scenarios as texts and numbers."""
+    answer = read(evaluations.EvaluationData, result.data, result.name)
     numbers = dict.fromkeys(n for x in answer.table for n in x.scenarios)
     return {"answer": answer, "numbers": [(n, int(n)) for n in numbers]}
 
 
-def monitored(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """The answer of ``monitor --json``, which holds no trace: its verdict, and when each part is true."""
-    answer = read(monitor.Answer, result.data, result.name)
+def monitored(result: PageResult, context: PageContext, words: Words) -> dict[str, object]:
+    """Return the answer of ``monitor --json``, which has no trace: its verdict, and when each
+    part is true.
+    """
+    answer = read(monitor.MonitorData, result.data, result.name)
     strips = [(x.formula, x.true) for x in answer.parts]
     return {"answer": answer, "strips": strips, "overruled": [write(x) for x in answer.overruled]}

@@ -1,1 +1,1 @@
-"""The studio: a local page that asks questions through the API, in worker processes."""
+"""The studio: a local web page for writing and trying formulas; worker processes answer its questions."""

@@ -1,9 +1,10 @@
-"""Definitions as they are being written: a draft becomes a spec set on top of another one.
+"""Turns definitions that are being written into specification files: a draft becomes a spec set on top of
+another.
 
-What a draft defines replaces definitions of the set below, one by one or in ``each`` blocks; what is new to
-the library is declared for all sets, since a set can only replace. What would change other sets under the
-hand of their readers (``when``, options and sets of the library) is a mistake. All mistakes are told, each
-with its place in the draft.
+Definitions of the draft replace those of the set below, one by one or in ``each`` blocks. New ones are
+declared for all sets, because a set can only replace. Statements that would silently change other sets
+(``when``, options and sets of the library) are errors. All errors are reported, each with its place in the
+draft.
 """
 
 import re
@@ -17,7 +18,7 @@ from roadproof.library.diagnose import Lost, Proofreader, as_diagnostic, claim_e
 from roadproof.library.loading import load_library
 from roadproof.library.scenario_references import read_query
 from roadproof.library.specification import Library, Source, Specification
-from roadproof.logic.instances import instances
+from roadproof.logic.instances import expand_each
 from roadproof.logic.parse import parse_library
 from roadproof.logic.syntax import EachBlock, WhenBlock
 from roadproof.runtime.records import dataclass
@@ -32,7 +33,7 @@ _WORDS = re.compile(
 
 @dataclass(frozen=True)
 class Draft:
-    """``text`` on top of the spec set ``base``; ``before`` is an earlier text, for a comparison."""
+    """A ``text`` on top of the spec set ``base``; ``before`` is an earlier text, for a comparison."""
 
     base: str = "base"
     text: str = ""
@@ -42,16 +43,16 @@ class Draft:
 
     @property
     def edited(self) -> str:
-        """The set that the draft makes: ``edit``, or the one below where it says nothing."""
+        """The set that the draft makes: ``edit``, or ``base`` for an empty draft."""
         return EDIT if _statements(self.text) else self.base
 
     def definitions(self, *sets: str) -> Definitions:
-        """What questions are asked of; the set is ``edited`` where none is named, and where it is ``edit``.
+        """Return the definitions of some sets, by default of ``edited``; ``edit`` stands for ``edited``.
 
-        Raises ``TextError`` for the first mistake, ``InputError``.
+        Raises ``TextError`` for the first error, ``InputError``.
         """
         library = _library(self.base, self.text, self.before)
-        if BEFORE in sets and (names := sorted(_told_otherwise(self.text, self.before or ""))):
+        if BEFORE in sets and (names := sorted(_conflicting_declarations(self.text, self.before or ""))):
             raise UsageError(
                 f"{', '.join(names)}: is declared for all sets, and not alike before and after the edit, so "
                 "the two cannot be compared; keep the present text as before, or give it another name"
@@ -60,14 +61,14 @@ class Draft:
         return chosen_in(library, chosen, self.options, self.params)
 
     def file(self) -> str:
-        """The draft as one specification file, which declares its sets. Raises ``TextError``."""
+        """Return the draft as one specification file, which declares its sets. Raises ``TextError``."""
         sources = sources_of(self.base, self.text, self.before)
         return "\n".join(_without_blank_lines(x.text) for x in sources if x.text.strip())
 
 
 @dataclass(frozen=True)
 class Mistake:
-    """Something wrong: ``where`` is "definitions", "parameters", or the name of a formula that is asked."""
+    """An error: ``where`` is "definitions", "parameters", or the name of a formula."""
 
     where: str
     message: str
@@ -76,42 +77,42 @@ class Mistake:
 
 
 def mistakes(draft: Draft, formulas: Mapping[str, str]) -> list[Mistake]:
-    """All mistakes of a draft, then those of formulas, by the name of each.
+    """Return all errors of a draft, then those of formulas, by the name of each.
 
-    Nothing is said of what follows from what could not be read.
+    Consequences of an unreadable statement are not reported.
     """
     sources = sources_of(draft.base, draft.text, draft.before)
     errors, library, lost = _proofreader(draft.base).errors_in(*sources)
-    errors = [*refused(draft.text), *errors]
+    errors = [*forbidden_statements(draft.text), *errors]
     every = dict.fromkeys(_mistake(error, DRAFT) for error in errors)
-    found = sorted(
+    ordered = sorted(
         every, key=lambda x: (0, 0) if x.position is None else (x.position.line, x.position.column)
     )
     try:
         home = library.select(draft.edited, draft.options)
     except RoadproofError as error:
-        told = _mistake(error, DRAFT)
-        return found if any(x.message in told.message for x in found) else [*found, told]
+        mistake = _mistake(error, DRAFT)
+        return ordered if any(x.message in mistake.message for x in ordered) else [*ordered, mistake]
     try:
         values_of(library, draft.params)
     except RoadproofError as error:
-        found.append(Mistake(PARAMETERS, str(error)))
+        ordered.append(Mistake(PARAMETERS, str(error)))
     for name, formula in formulas.items():
         for wrong in _in_formula(home, formula, lost):
-            told = _mistake(wrong, name)
-            if told.where == name or not found:
-                found.append(told)
-    return found
+            mistake = _mistake(wrong, name)
+            if mistake.where == name or not ordered:
+                ordered.append(mistake)
+    return ordered
 
 
 @lru_cache(maxsize=16)
 def _proofreader(base: str) -> Proofreader:
-    """One for each set below: it keeps what definitions mean in ``edit``."""
+    """Return a proofreader for the set below; it caches the meaning of definitions in ``edit``."""
     return Proofreader(load_library())
 
 
 def _in_formula(home: Specification, formula: str, lost: Lost) -> Sequence[RoadproofError]:
-    """What is wrong with a formula, or with the number of a scenario."""
+    """Return the errors of a formula, or of the number of a scenario."""
     try:
         read_query(home, formula, QUESTION)
     except TextError:
@@ -122,7 +123,7 @@ def _in_formula(home: Specification, formula: str, lost: Lost) -> Sequence[Roadp
 
 
 def _mistake(error: RoadproofError, where: str) -> Mistake:
-    """What an error is told as; its place counts in the draft, whichever part of it was read."""
+    """Return an error with its place in the draft, whichever part of the draft was read."""
     if not isinstance(error, TextError):
         return Mistake(where, str(error))
     if error.source not in (*_HEADED, DRAFT, QUESTION, ""):
@@ -136,7 +137,9 @@ def _mistake(error: RoadproofError, where: str) -> Mistake:
 
 
 def place_in(source: str, at: tuple[int, int]) -> tuple[str, tuple[int, int]] | None:
-    """A place in a text as the user sees it: in "definitions" or "formula"; None in the library's texts."""
+    """Return a place in a text as the user sees it: in "definitions" or "formula"; None for the library's
+    texts.
+    """
     if source == _source_name(EDIT):
         return DRAFT, (at[0] - 1, at[1])
     return (source, at) if source in (DRAFT, QUESTION) else None
@@ -154,12 +157,12 @@ _HEADED = (_source_name(EDIT), _source_name(BEFORE))
 
 @lru_cache(maxsize=16)
 def _library(base: str, text: str, before: str | None) -> Library:
-    raise_all(refused(text))
+    raise_all(forbidden_statements(text))
     return load_library(sources_of(base, text, before))
 
 
 def sources_of(base: str, text: str, before: str | None) -> list[Source]:
-    """The specification files that a draft stands for; ``edit`` is a set on top of ``base``.
+    """Return the specification files for a draft; ``edit`` is a set on top of ``base``.
 
     A set begins on a line of its own above the text, so lines in it are one further down.
     """
@@ -177,44 +180,46 @@ def sources_of(base: str, text: str, before: str | None) -> list[Source]:
             elif name == EDIT or names is not None or _head(written, span)[:2] not in declared:
                 shared.append(span)
         known |= {x for span in shared for x in _defined_in(written, span) or ()}
-        sources.append(Source(DRAFT, _only(written, shared)))
+        sources.append(Source(DRAFT, _blanked_outside(written, shared)))
         head = f"set {name} extends {base} {{\n"
-        sources.append(Source(_source_name(name), f"{head}{_only(written, inside)}\n}}\n"))
+        sources.append(Source(_source_name(name), f"{head}{_blanked_outside(written, inside)}\n}}\n"))
     return sources
 
 
-def refused(text: str) -> list[TextError]:
-    """What cannot be of the set ``edit`` alone, and would change others that it is compared with."""
+def forbidden_statements(text: str) -> list[TextError]:
+    """Return errors for statements that would change other sets than ``edit``."""
     library = load_library()
     there = library.definitions.keys()
-    found: list[TextError] = []
+    errors: list[TextError] = []
     for span in _statements(text):
         word, name, start = _head(text, span)
         names = _defined_in(text, span) or set()
         inner = (_names_in(text[start : span[1]]) or set()) if word == "when" else set[str]()
         if word == "option" and name in library.options:
-            told = f"option {name} is the library's: it would change every set"
+            message = f"option {name} is the library's: it would change every set"
             hint = "Choose its value below Parameters and readings."
         elif word == "set" and name in (*library.sets, EDIT, BEFORE):
-            told = f"there is a set {name} already, and it would be another one"
+            message = f"there is a set {name} already, and it would be another one"
             hint = "Give it another name."
         elif replaced := sorted(inner & there):
-            told = f"what an option says holds in all sets: {replaced[0]} would be replaced below {EDIT} too"
+            message = (
+                f"what an option says holds in all sets: {replaced[0]} would be replaced below {EDIT} too"
+            )
             hint = "Replace it by a definition with a name of its own, and let the option replace that one."
         elif names & there and names - there:
             new, known = sorted(names - there), sorted(names & there)
-            told = f"a block either replaces or adds: {known[0]} is in the library, {new[0]} is not"
+            message = f"a block either replaces or adds: {known[0]} is in the library, {new[0]} is not"
             hint = "Write two blocks."
         else:
             continue
         line = text.count("\n", 0, start) + 1
         at = Position(line, start - text.rfind("\n", 0, start))
-        found.append(TextError(told, at, hint).locate(DRAFT, text))
-    return found
+        errors.append(TextError(message, at, hint).locate(DRAFT, text))
+    return errors
 
 
-def _told_otherwise(text: str, before: str) -> list[str]:
-    """What both texts declare for all sets, and not alike, such as ``param near``."""
+def _conflicting_declarations(text: str, before: str) -> list[str]:
+    """Return the names that both texts declare for all sets, but differently, such as ``param near``."""
 
     def declared(written: str) -> dict[str, str]:
         heads = {span: _head(written, span) for span in _statements(written)}
@@ -229,63 +234,63 @@ def _told_otherwise(text: str, before: str) -> list[str]:
 
 
 def _statements(text: str) -> list[tuple[int, int]]:
-    """Where each statement begins and ends; what stands before the first one belongs to it.
+    """Return the start and end of each statement; text before the first one belongs to it.
 
     A definition that is not closed ends where the next statement begins.
     """
     begins: list[int] = []
     is_block, depth = False, 0
-    for found in _WORDS.finditer(text):
-        if found[0] in ("{", "}"):
-            depth = max(0, depth + (1 if found[0] == "{" else -1))
-        elif found[1] is not None and _begins(found) and not (is_block and depth):
-            begins.append(found.start())
-            is_block, depth = found[1] in ("each", "set", "when"), 0
+    for token in _WORDS.finditer(text):
+        if token[0] in ("{", "}"):
+            depth = max(0, depth + (1 if token[0] == "{" else -1))
+        elif token[1] is not None and _begins_statement(token) and not (is_block and depth):
+            begins.append(token.start())
+            is_block, depth = token[1] in ("each", "set", "when"), 0
     if not begins:
         return [(0, len(text))] if _says_something(text) else []
     return list(zip([0, *begins[1:]], [*begins[1:], len(text)], strict=True))
 
 
-def _begins(found: re.Match[str]) -> bool:
-    return found[1] not in ("lane", "title") or found[2] == "of"
+def _begins_statement(token: re.Match[str]) -> bool:
+    return token[1] not in ("lane", "title") or token[2] == "of"
 
 
 def _says_something(text: str) -> bool:
-    """Whether there is more than space and comments."""
+    """Return whether a text has more than space and comments."""
     return any(line.partition("#")[0].strip() for line in text.splitlines())
 
 
 def _defined_in(text: str, span: tuple[int, int]) -> set[str] | None:
-    """The names that a statement defines, in an ``each`` block several; None where it is another one."""
-    for found in _WORDS.finditer(text, *span):
-        if found[1] == "def":
-            return {found[2]}
-        if found[1] == "each":
-            return _names_in(text[found.start() : span[1]])
-        if found[1] is not None:
+    """Return the names that a statement defines, several for an ``each`` block; None for other statements."""
+    for token in _WORDS.finditer(text, *span):
+        if token[1] == "def":
+            return {token[2]}
+        if token[1] == "each":
+            return _names_in(text[token.start() : span[1]])
+        if token[1] is not None:
             return None
     return None
 
 
 def _head(text: str, span: tuple[int, int]) -> tuple[str, str, int]:
-    """The first word of a statement, the name after it, and where it begins."""
-    found = next((x for x in _WORDS.finditer(text, *span) if x[1] is not None), None)
-    return ("", "", span[0]) if found is None else (found[1], found[2], found.start())
+    """Return the first word of a statement, the name after it, and its position."""
+    token = next((x for x in _WORDS.finditer(text, *span) if x[1] is not None), None)
+    return ("", "", span[0]) if token is None else (token[1], token[2], token.start())
 
 
 def _names_in(block: str) -> set[str] | None:
-    """The names that an ``each`` or a ``when`` block defines; None where it cannot be read."""
+    """Return the names that an ``each`` or ``when`` block defines; None for an unreadable block."""
     try:
         read = parse_library(block, DRAFT)
     except TextError:
         return None
     blocks = (x for x in read if isinstance(x, EachBlock | WhenBlock))
-    several = (instances(x) if isinstance(x, EachBlock) else x.definitions for x in blocks)
+    several = (expand_each(x) if isinstance(x, EachBlock) else x.definitions for x in blocks)
     return {definition.name for some in several for definition in some}
 
 
-def _only(text: str, spans: Sequence[tuple[int, int]]) -> str:
-    """``text`` with spaces in place of all that is in none of ``spans``, so that places stay."""
+def _blanked_outside(text: str, spans: Sequence[tuple[int, int]]) -> str:
+    """Return ``text`` with spaces instead of everything outside ``spans``, so that positions stay."""
     inside = [False] * len(text)
     for begin, end in spans:
         inside[begin:end] = [True] * (min(end, len(text)) - begin)

@@ -1,16 +1,17 @@
-"""Words for the editor: what there is to be named, what a name means, and what is wrong with a text."""
+"""Jobs for the editor: known names, the meaning of a name, and the errors of a text."""
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.codec import write
 from roadproof.extensions.pages.studio.drafting import mistakes
-from roadproof.extensions.pages.studio.requests import Answer, Ask
+from roadproof.extensions.pages.studio.requests import Answer, StudioQuestion
 from roadproof.library.elaborate import read_claim, signature
 from roadproof.library.scenario_references import read_query
 from roadproof.library.scenarios import number_in, scenario_number
 from roadproof.library.specification import Specification, source_of
 from roadproof.library.words import words_of
-from roadproof.logic.first_instant import told_first_instants
-from roadproof.logic.show import as_syntax, decimal, text
+from roadproof.logic.first_instant import first_instant_warnings
+from roadproof.logic.restore import as_syntax
+from roadproof.logic.show import decimal, text
 from roadproof.logic.syntax import Definition, ParameterDeclaration
 from roadproof.world.signals import SIGNALS, SIZES
 
@@ -18,9 +19,9 @@ WIDTH = 84
 LONGEST_EXPANSION = 4000  # characters of a definition that is written out
 
 
-def names(ask: Ask) -> Answer:
-    """Everything that can be named, for completion: definitions, parameters, signals, sets."""
-    home = ask.home.specification
+def names(question: StudioQuestion) -> Answer:
+    """Return every name for completion: definitions, parameters, signals, sets, options and scenarios."""
+    home = question.home.specification
     library = home.library
     return {
         "definitions": [_described(home, x) for x in home.definitions.values()],
@@ -51,9 +52,9 @@ def _described(home: Specification, definition: Definition) -> Answer:
     return {"name": definition.name, "parameters": parameters, "doc": home.describe(definition)}
 
 
-def definition(ask: Ask) -> Answer:
-    """One definition: where it is from, its text, and written out."""
-    home, name = ask.home.specification, ask.name
+def definition(question: StudioQuestion) -> Answer:
+    """Return one definition: its origin, its text, and its expansion."""
+    home, name = question.home.specification, question.name
     known = home.library.parameters.get(name)
     if known is not None:
         bound = f" where {name} {known.bound} 0" if known.bound else ""
@@ -63,20 +64,22 @@ def definition(ask: Ask) -> Answer:
             "doc": known.doc,
             "expansion": "",
         }
-    found = home.definitions.get(name)
-    if found is None:
+    declared = home.definitions.get(name)
+    if declared is None:
         return {"name": name, "text": "", "doc": "", "expansion": ""}
     return {
         "name": name,
-        "text": text(found, WIDTH),
-        "doc": home.describe(found),
-        "from": source_of(home.library, found).name,
+        "text": text(declared, WIDTH),
+        "doc": home.describe(declared),
+        "from": source_of(home.library, declared).name,
         "expansion": _expansion(home, name),
     }
 
 
 def _expansion(home: Specification, name: str) -> str:
-    """A definition of a formula without other definitions; nothing of a number, or of a long one."""
+    """Return a definition without other definitions in it; empty where that fails, cut off where
+    it is long.
+    """
     try:
         roles = signature(home, name)
         sorts = {b.name: b.sort for b in home.definitions[name].parameters}
@@ -89,28 +92,28 @@ def _expansion(home: Specification, name: str) -> str:
     return written if len(written) <= LONGEST_EXPANSION else f"{written[:LONGEST_EXPANSION]} …"
 
 
-def read(ask: Ask) -> Answer:
-    """What is wrong with a draft and with the formulas that are asked of it, and what they are called."""
-    told = [
+def read(question: StudioQuestion) -> Answer:
+    """Return the errors of a draft and of its formulas, and a description of each formula."""
+    entries = [
         {
             "where": x.where,
             "message": x.message,
             "hint": x.hint,
             "at": (at := x.position) and [[at.line, at.column], [at.end_line, at.end_column]],
         }
-        for x in mistakes(ask.draft, ask.formulas)
+        for x in mistakes(question.draft, question.formulas)
     ]
-    return {"mistakes": told, "formulas": _about(ask)}
+    return {"mistakes": entries, "formulas": _about(question)}
 
 
-def _about(ask: Ask) -> Answer:
-    """What each formula that can be read is called."""
+def _about(question: StudioQuestion) -> Answer:
+    """Return the name, vehicles and lanes of each readable formula."""
     try:
-        home = ask.home.specification
+        home = question.home.specification
     except RoadproofError:
         return {}
     about: Answer = {}
-    for name, formula in ask.formulas.items():
+    for name, formula in question.formulas.items():
         try:
             query = read_query(home, formula)[1]
         except RoadproofError:
@@ -120,7 +123,7 @@ def _about(ask: Ask) -> Answer:
         about[name] = {
             "text": query.text,
             "name": "" if words is None else words.name,
-            "sentence": "; ".join(told_first_instants(query.formula)) if words is None else words.sentence,
+            "sentence": "; ".join(first_instant_warnings(query.formula)) if words is None else words.sentence,
             "vehicles": list(query.vehicles),
             "lanes": list(query.lanes),
         }

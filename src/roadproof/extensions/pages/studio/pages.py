@@ -1,4 +1,4 @@
-"""The files that the browser is given, from a fixed list: no name that it sends is looked up on a disk."""
+"""The files for the browser, from a fixed list: no name that the browser sends is looked up on a disk."""
 
 import json
 from collections.abc import Sequence
@@ -9,8 +9,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from roadproof.core_record import DRIVES
 from roadproof.errors import InputError, RoadproofError
-from roadproof.evidence.drive_file import SCHEMAS_READ
 from roadproof.evidence.strict import read_json
 from roadproof.extensions.pages.studio.examples import EXAMPLES
 from roadproof.extensions.pages.studio.requests import form
@@ -37,8 +37,8 @@ class StaticFile:
 
 
 @cache
-def served() -> dict[str, StaticFile]:
-    """Every file by its name below /page/."""
+def static_files() -> dict[str, StaticFile]:
+    """Return every file by its name below /page/."""
     modules = {f"{name}.js": StaticFile(text, _SCRIPT) for name, text in _modules().items()}
     return {
         **modules,
@@ -48,7 +48,7 @@ def served() -> dict[str, StaticFile]:
 
 
 def page_of(nonce: str) -> str:
-    """The page, whose scripts carry ``nonce``; all are asked for at once, not when they are met."""
+    """Return the page, whose scripts carry ``nonce``; it preloads all scripts at once."""
     addresses = {name: f"/page/{name}.js" for name in _modules()}
     early = "\n".join(f'<link rel="modulepreload" href="{x}" nonce="{nonce}">' for x in addresses.values())
     page = _read("index.html").replace("{{early}}", early).replace("{{nonce}}", nonce)
@@ -75,11 +75,12 @@ def _read(name: str) -> str:
 
 
 @dataclass(frozen=True)
-class Begun:
-    """``text``: the definitions that the editor begins with; ``drives``, ``specs``: the contents of drive
-    files and the texts of specification files that the page lists, by name; ``files``: the texts of other
-    named files, which the page opens as if they were dropped on it; ``shows``: whether the page begins with
-    the first drive.
+class StartContent:
+    """The content that the page starts with.
+
+    ``text``: the definitions in the editor; ``drives``, ``specs``: contents of drive files and texts of
+    specification files that the page lists, by name; ``files``: texts of other named files, which the page
+    opens as if they were dropped on it; ``shows``: whether the page starts with the first drive.
     """
 
     text: str = ""
@@ -89,7 +90,7 @@ class Begun:
     shows: bool = True
 
     def as_data(self) -> dict[str, object]:
-        """As plain data, with the options that the page offers."""
+        """Return plain data, with the options that the page offers."""
         return {
             "text": self.text,
             "drives": [{"name": name, "drive": x} for name, x in self.drives],
@@ -101,11 +102,11 @@ class Begun:
         }
 
 
-def begin_with(paths: Sequence[Path]) -> Begun:
-    """Read the files that the studio starts with, and the drives and definitions of folders.
+def read_start_files(paths: Sequence[Path]) -> StartContent:
+    """Return the files that the studio starts with, and the drives and definitions of folders.
 
-    The editor begins with the definitions of the files that are named, not with those of folders.
-    Raises ``InputError`` for other kinds of file, and for more than ``LARGEST_TOGETHER`` bytes of recordings.
+    The editor starts with the definitions of the named files, not with those of folders. Raises
+    ``InputError`` for other kinds of file, and for more than ``LARGEST_TOGETHER`` bytes of recordings.
     """
     texts: list[str] = []
     drives: list[tuple[str, Any]] = []
@@ -113,7 +114,7 @@ def begin_with(paths: Sequence[Path]) -> Begun:
     files: list[tuple[str, str]] = []
     for path in paths:
         if path.is_dir():
-            inside = found_in(path)
+            inside = read_folder(path)
             drives += inside.drives
             specs += inside.specs
         elif path.suffix == ".spec":
@@ -133,22 +134,22 @@ def begin_with(paths: Sequence[Path]) -> Begun:
             f"the named recordings have more than {LARGEST_TOGETHER // 1_000_000} MB together: "
             "use roadproof evaluate"
         )
-    return Begun("\n".join(texts), tuple(drives), tuple(specs), tuple(files))
+    return StartContent("\n".join(texts), tuple(drives), tuple(specs), tuple(files))
 
 
 def is_drive(content: object) -> bool:
-    """Return whether plain data say that they are a drive file."""
-    return isinstance(content, dict) and content.get("schema") in SCHEMAS_READ
+    """Return whether plain data claim to be a drive file."""
+    return isinstance(content, dict) and content.get("schema") in DRIVES
 
 
 def _text_of(path: Path) -> str:
     return read_text(path, LARGEST_TOGETHER, "use roadproof evaluate")
 
 
-def found_in(folder: Path) -> Begun:
-    """The specification and drive files of a folder, to choose from.
+def read_folder(folder: Path) -> StartContent:
+    """Return the specification and drive files of a folder, for the user to choose from.
 
-    Other files, large ones, those that cannot be read, and all beyond ``MOST_FILES`` are left out.
+    Other files, large ones, unreadable ones, and all beyond ``MOST_FILES`` are left out.
     """
     drives: list[tuple[str, Any]] = []
     specs: list[tuple[str, str]] = []
@@ -161,4 +162,4 @@ def found_in(folder: Path) -> Begun:
             content = read_json(path, LARGEST_FILE)
             if is_drive(content):
                 drives.append((path.name, content))
-    return Begun("", tuple(drives), tuple(specs), shows=False)
+    return StartContent("", tuple(drives), tuple(specs), shows=False)

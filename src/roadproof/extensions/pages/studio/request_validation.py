@@ -1,8 +1,9 @@
-"""Who may ask: this machine, this page, this start, in JSON, and not too much of it.
+"""Admits requests to the studio: from this machine, from this page, with the token of this start, and small
+enough.
 
 A page of another site can make a browser send requests to 127.0.0.1, and can make a name of its own point
-there (DNS rebinding). It can neither read the token, which stands in the fragment of the address that was
-printed, nor forge the headers Host and Origin.
+there (DNS rebinding). It can neither read the token, which stands in the fragment of the printed address, nor
+forge the headers Host and Origin.
 """
 
 import hmac
@@ -27,7 +28,7 @@ POLICY = (
 
 
 class RefusedError(Exception):
-    """A request that is not answered: the HTTP status, and why in words."""
+    """A refused request: the HTTP status and the reason."""
 
     def __init__(self, status: int, reason: str) -> None:
         super().__init__(reason)
@@ -37,7 +38,7 @@ class RefusedError(Exception):
 
 @dataclass(frozen=True)
 class Guard:
-    """An ASGI application in front of ``app``, for the server at ``port`` that was started with ``token``."""
+    """An ASGI application that protects ``app``; ``port`` and ``token`` are those of this start."""
 
     app: App
     port: int
@@ -54,10 +55,10 @@ class Guard:
                 except RefusedError as refused:
                     await refuse(send, refused)
                     return
-                await self.app(scope, receive, _safely(send))
+                await self.app(scope, receive, _with_safe_headers(send))
 
     def admit(self, method: str, headers: Mapping[str, str]) -> None:
-        """Raises ``RefusedError``."""
+        """Raise ``RefusedError`` for a request that is not from the page of this start."""
         hosts = {f"127.0.0.1:{self.port}", f"localhost:{self.port}"}
         if headers.get("host") not in hosts:
             raise RefusedError(403, "this server answers to its own address only")
@@ -79,33 +80,33 @@ class Guard:
 
 
 def headers_of(scope: Message) -> dict[str, str]:
-    """The headers by name. A name that comes twice, as in smuggled requests, has no value that is known."""
-    found: dict[str, str] = {}
+    """Return the headers by name; a repeated header, as in smuggled requests, counts as empty."""
+    headers: dict[str, str] = {}
     match scope:
         case {"headers": pairs}:
             for name, value in pairs:
                 key = name.decode("latin-1").lower()
-                found[key] = "" if key in found else value.decode("latin-1")
-    return found
+                headers[key] = "" if key in headers else value.decode("latin-1")
+    return headers
 
 
-def _safely(send: Send) -> Send:
-    """As ``send``, with the headers of ``safe_headers`` where an answer does not have its own."""
+def _with_safe_headers(send: Send) -> Send:
+    """Return ``send`` with ``safe_headers`` added to each response that does not set them."""
 
     async def safe_send(message: Message) -> None:
         match message:
             case {"type": "http.response.start"}:
-                said = list(message.get("headers", []))
-                names = {name.lower() for name, _ in said}
-                said += [(name, value) for name, value in safe_headers() if name not in names]
-                message = {**message, "headers": said}
+                headers = list(message.get("headers", []))
+                names = {name.lower() for name, _ in headers}
+                headers += [(name, value) for name, value in safe_headers() if name not in names]
+                message = {**message, "headers": headers}
         await send(message)
 
     return safe_send
 
 
 async def refuse(send: Send, refused: RefusedError) -> None:
-    """Answer with the status and the reason."""
+    """Respond with the status and the reason."""
     body = json.dumps({"error": refused.reason}).encode()
     size = str(len(body)).encode()
     headers = [(b"content-type", b"application/json"), (b"content-length", size), (b"connection", b"close")]
@@ -115,7 +116,7 @@ async def refuse(send: Send, refused: RefusedError) -> None:
 
 
 def safe_headers(nonce: str = "") -> list[tuple[bytes, bytes]]:
-    """What every answer says of what a browser may do with it."""
+    """Return the security headers of every response; ``nonce``: that of the page's scripts."""
     policy = POLICY.format(nonce=nonce) if nonce else "default-src 'none'; frame-ancestors 'none'"
     return [
         (b"content-security-policy", policy.encode()),
@@ -128,7 +129,7 @@ def safe_headers(nonce: str = "") -> list[tuple[bytes, bytes]]:
 
 
 async def read_json(receive: Receive, announced: str, most: int) -> JsonObject:
-    """The body as a JSON object; its size is counted while it comes, whatever was ``announced``.
+    """Return the body as a JSON object; its size is counted while it arrives, whatever was ``announced``.
 
     Raises ``RefusedError``.
     """

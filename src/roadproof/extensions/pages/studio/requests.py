@@ -1,4 +1,4 @@
-"""What a page asks, as values: every field is read strictly, since anything may be sent."""
+"""Requests of the page as data classes; every field is validated, since anything may be sent."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -22,7 +22,7 @@ FORM: Mapping[str, tuple[type[Settings], tuple[str, ...]]] = {
     "find": (Witness, ("objective",)),
     "prove": (Prove, ("declared",)),
 }
-"""The options that the page offers for a job, of the question that it asks."""
+"""The options that the page offers for a job, with the settings class of its question."""
 Answer: TypeAlias = dict[str, object]
 
 
@@ -36,7 +36,7 @@ class File:
 
 @dataclass(frozen=True)
 class Pair:
-    """Vehicles of a recording that was dropped, and the frames to look at."""
+    """Vehicles of a dropped recording, and the frames to look at."""
 
     recording: str
     vehicles: tuple[int, ...]
@@ -45,16 +45,16 @@ class Pair:
 
 
 @dataclass(frozen=True)
-class Part:
-    """A part of the question by its place, and the instant (s) at which it is to be explained."""
+class ExplainedPart:
+    """A part of the question by its index, and the instant (s) at which it is to be explained."""
 
     part: int
     at: float
 
 
 @dataclass(frozen=True)
-class Ask:
-    """What the page asks; each job reads the fields that it needs. Raises ``UsageError``."""
+class StudioQuestion:
+    """A question of the page; each job reads the fields that it needs. Raises ``UsageError``."""
 
     draft: Draft
     kind: str = ""
@@ -68,7 +68,7 @@ class Ask:
     compare: bool = False
     fresh: bool = False
     drive: object = None
-    explain: Part | None = None
+    explain: ExplainedPart | None = None
     files: tuple[File, ...] = ()
     pair: Pair | None = None
     name: str = ""
@@ -99,12 +99,12 @@ class Ask:
 
     @property
     def explained(self) -> tuple[int, Fraction] | None:
-        """The part that is to be explained, by its place, and the instant."""
-        found = self.explain
-        return None if found is None else (found.part, Fraction(found.at).limit_denominator(10**6))
+        """The part to be explained, by its index, and the instant; None for none."""
+        target = self.explain
+        return None if target is None else (target.part, Fraction(target.at).limit_denominator(10**6))
 
     def options(self, job: str) -> dict[str, Any]:
-        """The options that the page has chosen for a job. Raises ``UsageError``."""
+        """Return the options that the page has chosen for a job. Raises ``UsageError``."""
         question, names = FORM[job]
         for name, value in self.settings.items():
             if name not in names or type(value) is not type(getattr(question, name)):
@@ -112,13 +112,13 @@ class Ask:
         return dict(self.settings)
 
 
-def read_ask(content: object) -> Ask:
-    """What a page asks with a job. Raises ``InputError``, ``UsageError``."""
-    return read(Ask, content, "question")
+def read_question(content: object) -> StudioQuestion:
+    """Return the question of a request. Raises ``InputError``, ``UsageError``."""
+    return read(StudioQuestion, content, "question")
 
 
 def form() -> list[dict[str, object]]:
-    """The options that the page offers, as it shows them."""
+    """Return the options that the page offers, as it shows them."""
     return [
         {
             "job": job,

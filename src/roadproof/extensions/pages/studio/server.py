@@ -1,4 +1,6 @@
-"""The server of the studio: one page, and jobs over JSON lines. starlette and uvicorn live here."""
+"""The web server of the studio: one page, and jobs over JSON lines; the only module with starlette and
+uvicorn.
+"""
 
 import asyncio
 import contextlib
@@ -11,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from roadproof.errors import MissingSolverError, UsageError
-from roadproof.extensions.pages.studio.pages import Begun, page_of, served
+from roadproof.extensions.pages.studio.pages import StartContent, page_of, static_files
 from roadproof.extensions.pages.studio.request_validation import (
     LARGEST_BODY,
     Guard,
@@ -24,47 +26,47 @@ from roadproof.extensions.pages.studio.request_validation import (
     refuse,
     safe_headers,
 )
-from roadproof.extensions.pages.studio.worker_pool import Limits, WorkerPool
+from roadproof.extensions.pages.studio.worker_pool import PoolLimits, WorkerPool
 
 if TYPE_CHECKING:
     from starlette.applications import Starlette
 
 # Jobs that answer while somebody types; one worker, which the others cannot keep.
-LIVE = Limits(workers=1, waiting=32, seconds=20.0, long=False)
-"""Limits of jobs that take a moment."""
+LIVE = PoolLimits(workers=1, waiting=32, seconds=20.0, long=False)
+"""The limits of jobs that take a moment."""
 
 
 @dataclass
-class Studio:
-    """What the server holds: nothing of a page, so that tabs do not meet."""
+class StudioServer:
+    """The state of the server; it keeps nothing of a page, so tabs are independent."""
 
-    begun: Begun
-    long: Limits = field(default_factory=Limits)
-    live: Limits = LIVE
-    crews: dict[str, WorkerPool] = field(default_factory=dict)
+    start_content: StartContent
+    long: PoolLimits = field(default_factory=PoolLimits)
+    live: PoolLimits = LIVE
+    pools: dict[str, WorkerPool] = field(default_factory=dict)
 
     @contextlib.asynccontextmanager
     async def run(self, app: object) -> AsyncIterator[None]:
-        """Workers, for as long as the server runs; they become warm while the page is loaded already."""
-        self.crews = {"live": WorkerPool(self.live), "long": WorkerPool(self.long)}
+        """Keep workers for as long as the server runs; they warm up while the page loads."""
+        self.pools = {"live": WorkerPool(self.live), "long": WorkerPool(self.long)}
         starting = asyncio.create_task(self._start())
         try:
             yield
         finally:
             starting.cancel()
             await asyncio.gather(
-                starting, *(crew.end() for crew in self.crews.values()), return_exceptions=True
+                starting, *(pool.end() for pool in self.pools.values()), return_exceptions=True
             )
 
     async def _start(self) -> None:
-        for crew in self.crews.values():
-            await crew.start()
+        for pool in self.pools.values():
+            await pool.start()
 
     async def ask(self, scope: Message, receive: Receive, send: Send, most: int) -> None:
-        """Answer one question with JSON lines; it ends with the request, whoever breaks that off."""
+        """Answer one question with JSON lines; the job ends when the request is closed."""
         try:
-            asked = await read_json(receive, headers_of(scope).get("content-length", ""), most)
-            crew, kind = self._crew(asked.get("kind"))
+            question = await read_json(receive, headers_of(scope).get("content-length", ""), most)
+            pool, kind = self._pool_for(question.get("kind"))
         except RefusedError as refused:
             await refuse(send, refused)
             return
@@ -72,8 +74,8 @@ class Studio:
         await send({"type": "http.response.start", "status": 200, "headers": headers})
         gone = asyncio.create_task(_until_gone(receive))
         try:
-            async with contextlib.aclosing(crew.work(kind, asked)) as told:
-                async for message in told:
+            async with contextlib.aclosing(pool.work(kind, question)) as messages:
+                async for message in messages:
                     if gone.done():
                         return
                     line = (json.dumps(message) + "\n").encode()
@@ -82,13 +84,13 @@ class Studio:
         finally:
             gone.cancel()
 
-    def _crew(self, kind: object) -> tuple[WorkerPool, str]:
+    def _pool_for(self, kind: object) -> tuple[WorkerPool, str]:
         from roadproof.extensions.pages.studio.jobs import LIVE as quick
         from roadproof.extensions.pages.studio.jobs import LONG as long
 
         for name, kinds in (("live", quick), ("long", long)):
             if isinstance(kind, str) and kind in kinds:
-                return self.crews[name], kind
+                return self.pools[name], kind
         raise RefusedError(400, "unknown kind of request")
 
 
@@ -99,12 +101,12 @@ async def _until_gone(receive: Receive) -> None:
                 return
 
 
-def application(studio: Studio, port: int, token: str, largest_body: int = LARGEST_BODY) -> Guard:
-    """The whole as an ASGI application. Raises ``MissingSolverError`` without starlette."""
+def application(studio: StudioServer, port: int, token: str, largest_body: int = LARGEST_BODY) -> Guard:
+    """Return the ASGI application. Raises ``MissingSolverError`` without starlette."""
     return Guard(_routes(studio, largest_body), port, token)
 
 
-def _routes(studio: Studio, largest_body: int) -> "Starlette":
+def _routes(studio: StudioServer, largest_body: int) -> "Starlette":
     try:
         from starlette.applications import Starlette
         from starlette.requests import Request
@@ -119,19 +121,19 @@ def _routes(studio: Studio, largest_body: int) -> "Starlette":
         return Response(page_of(nonce), media_type="text/html; charset=utf-8", headers=headers)
 
     async def file(request: Request) -> Response:
-        found = served().get(request.path_params["name"])
-        if found is None:
+        static_file = static_files().get(request.path_params["name"])
+        if static_file is None:
             return Response("there is no such file", 404)
-        return Response(found.text, media_type=found.kind)
+        return Response(static_file.text, media_type=static_file.kind)
 
     class AskEndpoint:
-        """An ASGI endpoint, since answers are streams that end when nobody listens."""
+        """An ASGI endpoint, because answers are streams that end when the client disconnects."""
 
         async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
             await studio.ask(scope, receive, send, largest_body)
 
     async def start(request: Request) -> Response:
-        return Response(json.dumps(studio.begun.as_data()), media_type="application/json")
+        return Response(json.dumps(studio.start_content.as_data()), media_type="application/json")
 
     return Starlette(
         routes=[
@@ -145,14 +147,14 @@ def _routes(studio: Studio, largest_body: int) -> "Starlette":
 
 
 def missing() -> MissingSolverError:
-    """What is said where the extra is not installed."""
+    """Return the error for a missing extra."""
     return MissingSolverError(
         "the studio needs starlette and uvicorn, which are not installed: pip install starlette uvicorn"
     )
 
 
 def serve(
-    studio: Studio,
+    studio: StudioServer,
     port: int | None,
     browser: bool,
     say: Callable[[str], None],
@@ -184,12 +186,12 @@ USUAL_PORT = 8642
 
 
 def listen(port: int | None) -> socket.socket:
-    """A socket on 127.0.0.1: at ``port``, or where that is None at the usual one or else at any that is free.
+    """Return a socket on 127.0.0.1, at ``port``; None stands for the usual port, or else any free one.
 
     Raises ``UsageError`` where the port is taken.
     """
-    wanted = [USUAL_PORT, 0] if port is None else [port]
-    for number in wanted:
+    ports = [USUAL_PORT, 0] if port is None else [port]
+    for number in ports:
         listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

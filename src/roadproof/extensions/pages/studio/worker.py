@@ -1,6 +1,6 @@
-"""What a worker of the studio does: one job at a time, each a question of the page.
+"""The worker process of the studio: it runs one job at a time.
 
-The server ends a worker that is to stop, since solvers do not answer politely.
+To stop a job the server kills the worker, since solvers do not react to requests to stop.
 """
 
 import os
@@ -24,9 +24,9 @@ _STAGES = {
 
 @dataclass(frozen=True)
 class WarmUp:
-    """The first job of a worker; ``memory``: MiB that jobs may take above what a warm worker has.
+    """The first job of a worker; ``memory``: MiB that jobs may take beyond a warm worker.
 
-    ``long``: whether it is to be warm for jobs that may take long, too.
+    ``long``: whether to warm up for jobs that may take long, too.
     """
 
     memory: int
@@ -35,29 +35,29 @@ class WarmUp:
 
 @dataclass(frozen=True)
 class Job:
-    """What is asked, by the kind of the job."""
+    """A question of the page with the kind of its job."""
 
     kind: str
-    ask: object
+    question: object
 
 
 def serve(job: Job | WarmUp) -> dict[str, object]:
-    """What the page is told of a job: ``answer`` or ``error``, and the seconds of processors as ``cpu``."""
+    """Run a job; return ``answer`` or ``error`` for the page, and the processor seconds as ``cpu``."""
     if isinstance(job, WarmUp):
         _warm_up(job)
         return {}
     before = _processor_time()
-    told = _answered(job)
-    return {**told, "cpu": round(_processor_time() - before, 3)}
+    reply = _answer_or_error(job)
+    return {**reply, "cpu": round(_processor_time() - before, 3)}
 
 
 def words_of(stage: Stage) -> str:
-    """A stage of a job in words for the page."""
+    """Return a stage of a job in words for the page."""
     return ", ".join(filter(None, (_STAGES.get(stage.name, stage.name), stage.told)))
 
 
 def _warm_up(job: WarmUp) -> None:
-    """Get ready for jobs; solvers that print reach nobody."""
+    """Prepare for jobs; output of solvers to stdout is discarded."""
     os.environ["ROADPROOF_QUIET"] = "1"
     with open(os.devnull, "wb") as nowhere:
         os.dup2(nowhere.fileno(), 1)
@@ -68,16 +68,16 @@ def _warm_up(job: WarmUp) -> None:
 
 
 def _processor_time() -> float:
-    """Seconds that this process has had of processors, with those of the processes that it waited for."""
+    """Return the processor seconds of this process and of the processes that it waited for."""
     used = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     return sum(x.ru_utime + x.ru_stime for x in used)
 
 
-def _answered(job: Job) -> dict[str, object]:
+def _answer_or_error(job: Job) -> dict[str, object]:
     from roadproof.extensions.pages.studio.jobs import answer
 
     try:
-        return {"answer": answer(job.kind, job.ask)}
+        return {"answer": answer(job.kind, job.question)}
     except RoadproofError as error:
         return {"error": str(error), "exit_code": error.exit_code}
     except MemoryError:
@@ -95,7 +95,7 @@ def _answered(job: Job) -> dict[str, object]:
 
 
 def _came_near_the_limit() -> bool:
-    """Whether this process has had less than 64 MiB left; there, libraries fail in ways of their own."""
+    """Return whether this process had less than 64 MiB left, where libraries fail in ways of their own."""
     most = resource.getrlimit(resource.RLIMIT_AS)[0]
     if sys.platform != "linux" or most == resource.RLIM_INFINITY:
         return False
@@ -105,7 +105,9 @@ def _came_near_the_limit() -> bool:
 
 
 def _limit_memory(memory: int) -> None:
-    """Let allocations fail that go beyond; a worker that cannot go on then ends, which the server tells."""
+    """Make allocations beyond ``memory`` MiB fail; a worker that cannot go on ends, which the
+    server reports.
+    """
     if sys.platform != "linux":
         return
     with open("/proc/self/statm", encoding="ascii") as file:

@@ -1,4 +1,4 @@
-"""Workers for the jobs of a page: warm, one job each, ended where they are to stop and replaced at once."""
+"""A pool of warm workers for the jobs of a page; a worker that has to stop is killed and replaced."""
 
 import asyncio
 import contextlib
@@ -16,9 +16,11 @@ Message = dict[str, object]
 
 
 @dataclass(frozen=True)
-class Limits:
-    """``workers`` processes, warm for ``long`` jobs or for those of a moment; at most ``waiting`` jobs that
-    none of them has begun; a job may take ``seconds`` of the clock and ``memory`` MiB.
+class PoolLimits:
+    """The limits of a pool.
+
+    ``workers``: the number of processes; ``long``: warm them up for long jobs; ``waiting``: the most jobs
+    that may wait; ``seconds`` and ``memory`` (MiB): the most that a job may take.
     """
 
     workers: int = 2
@@ -29,36 +31,38 @@ class Limits:
 
 
 class StudioWorker(Worker):
-    """A worker that is heard without blocking; ``warm`` is done once it takes jobs."""
+    """A worker whose messages are awaited without blocking; the task ``warm`` ends when it is
+    ready for jobs.
+    """
 
-    def __init__(self, limits: Limits) -> None:
+    def __init__(self, limits: PoolLimits) -> None:
         super().__init__(serve, fresh=True)
-        self.ask(WarmUp(limits.memory, limits.long))
+        self.send_job(WarmUp(limits.memory, limits.long))
         self.warm = asyncio.create_task(self._until_warm())
 
     async def _until_warm(self) -> None:
-        said: Stage | Reply | None = None
+        message: Stage | Reply | None = None
         with contextlib.suppress(DeadWorkerError):
-            while not isinstance(said, Reply):
-                said = await self.hear_within(None)
-            if said.error is not None:
+            while not isinstance(message, Reply):
+                message = await self.hear_within(None)
+            if message.error is not None:
                 self.process.kill()
 
     async def hear_within(self, seconds: float | None) -> Stage | Reply | None:
-        """Its next word; None where it says none for so long. Raises ``DeadWorkerError``."""
-        said = asyncio.Event()
+        """Return its next message, None after ``seconds`` without one. Raises ``DeadWorkerError``."""
+        readable = asyncio.Event()
         loop = asyncio.get_running_loop()
-        loop.add_reader(self.connection.fileno(), said.set)
+        loop.add_reader(self.connection.fileno(), readable.set)
         try:
-            await asyncio.wait_for(said.wait(), seconds)
+            await asyncio.wait_for(readable.wait(), seconds)
         except TimeoutError:
             return None
         finally:
             loop.remove_reader(self.connection.fileno())
-        return self.hear()
+        return self.receive()
 
     async def end(self) -> None:
-        """Kill it."""
+        """Kill the worker."""
         self.warm.cancel()
         self.process.kill()
         await asyncio.to_thread(self.process.join)
@@ -66,16 +70,16 @@ class StudioWorker(Worker):
 
 @dataclass
 class WorkerPool:
-    """Workers; to be started and ended in one event loop."""
+    """A pool of workers, to be started and ended in one event loop."""
 
-    limits: Limits = field(default_factory=Limits)
+    limits: PoolLimits = field(default_factory=PoolLimits)
     idle: "asyncio.Queue[StudioWorker]" = field(default_factory=asyncio.Queue)
     every: list[StudioWorker] = field(default_factory=list)
     waiting: int = 0
     closed: bool = False
 
     async def start(self) -> None:
-        """Start its workers, each when the one before is warm, so that others can work meanwhile."""
+        """Start the workers, each when the one before is warm, so that others can work meanwhile."""
         for _ in range(self.limits.workers):
             self._add()
             if self.every:
@@ -93,11 +97,13 @@ class WorkerPool:
         self.every.clear()
 
     async def work(
-        self, kind: str, ask: Mapping[str, object], seconds: float | None = None
+        self, kind: str, question: Mapping[str, object], seconds: float | None = None
     ) -> AsyncGenerator[Message, None]:
-        """What is told of a job: ``waiting``, ``stage`` and ``seconds`` while it runs, ``answer`` or
-        ``error`` at last, which is ``full`` where the queue is. A job whose listener goes away (``aclose``)
-        is ended with its worker.
+        """Yield messages about a job: ``waiting``, ``stage`` and ``seconds`` while it runs, then ``answer``
+        or ``error``.
+
+        An error is ``full`` where the queue is full. A job whose listener leaves (``aclose``) is ended with
+        its worker.
         """
         if self.waiting >= self.limits.waiting:
             busy = f"{len(self.every)} jobs run and {self.waiting} wait; stop one, or wait"
@@ -105,21 +111,23 @@ class WorkerPool:
             return
         self.waiting += 1
         try:
-            getting = asyncio.ensure_future(self._take())
+            pending_worker = asyncio.ensure_future(self._take())
             try:
-                while not (await asyncio.wait({getting}, timeout=BEAT))[0]:
+                while not (await asyncio.wait({pending_worker}, timeout=BEAT))[0]:
                     yield {"waiting": True}
             except BaseException:
-                await self._give_back(getting)
+                await self._give_back(pending_worker)
                 raise
         finally:
             self.waiting -= 1
-        async with contextlib.aclosing(self._run(getting.result(), kind, ask, seconds)) as told:
-            async for message in told:
+        async with contextlib.aclosing(
+            self._run(pending_worker.result(), kind, question, seconds)
+        ) as messages:
+            async for message in messages:
                 yield message
 
     async def _take(self) -> StudioWorker:
-        """A warm worker that lives."""
+        """Return a warm worker that is alive."""
         while True:
             worker = await self.idle.get()
             try:
@@ -132,10 +140,10 @@ class WorkerPool:
                 return worker
             await self._replace(worker)
 
-    async def _give_back(self, getting: "asyncio.Future[StudioWorker]") -> None:
-        getting.cancel()
+    async def _give_back(self, pending_worker: "asyncio.Future[StudioWorker]") -> None:
+        pending_worker.cancel()
         with contextlib.suppress(asyncio.CancelledError):
-            self.idle.put_nowait(await getting)
+            self.idle.put_nowait(await pending_worker)
 
     async def _replace(self, worker: StudioWorker) -> None:
         await worker.end()
@@ -144,26 +152,26 @@ class WorkerPool:
         self._add()
 
     async def _run(
-        self, worker: StudioWorker, kind: str, ask: Mapping[str, object], seconds: float | None
+        self, worker: StudioWorker, kind: str, question: Mapping[str, object], seconds: float | None
     ) -> AsyncGenerator[Message, None]:
-        """One job of a worker. Whatever ends it before it is answered ends the worker too."""
+        """Run one job on a worker; whatever ends it before its answer ends the worker, too."""
         most = self.limits.seconds if seconds is None else seconds
-        begun = time.monotonic()
+        started = time.monotonic()
         stage, done = "", False
         try:
-            worker.ask(Job(kind, ask))
+            worker.send_job(Job(kind, question))
             while not done:
-                said = await worker.hear_within(BEAT)
-                spent = time.monotonic() - begun
-                if isinstance(said, Reply):
+                message = await worker.hear_within(BEAT)
+                spent = time.monotonic() - started
+                if isinstance(message, Reply):
                     done = True
-                    fault = {"error": f"this is our fault: {said.error}", "exit_code": ExitCode.OUR_FAULT}
-                    yield {**(said.answer or fault), "seconds": round(spent, 3)}
+                    fault = {"error": f"this is our fault: {message.error}", "exit_code": ExitCode.OUR_FAULT}
+                    yield {**(message.answer or fault), "seconds": round(spent, 3)}
                 elif spent > most:
                     yield {"error": f"ended after {most:g} s, which is the most that a job may take"}
                     return
                 else:
-                    stage = stage if said is None else words_of(said)
+                    stage = stage if message is None else words_of(message)
                     yield {"stage": stage, "seconds": round(spent, 1)}
         except DeadWorkerError as death:
             yield {"error": f"its process ended: {death}; it may have run out of memory; ask again"}

@@ -1,4 +1,4 @@
-// Curves over the clock of the strips: the margin of the selected part, speeds, gaps against RSS distances.
+// Plots on the time axis of the strips: the margin of the selected part, speeds, gaps and RSS distances.
 
 import { html, UPlot, useEffect, useRef } from "vendor/view";
 import { colour, coloursOf, font } from "viewer/palette";
@@ -7,7 +7,7 @@ import { Term, TERMS } from "viewer/terms";
 
 const HEIGHT = 122;
 
-/** The data of one plot: a title, the unit, a clock, and lines. */
+/** Return the plot of a part's margin: title, instants and lines; null where it has none. */
 function marginOf(formula, id, drive) {
   const part = formula?.parts?.[id];
   if (!part?.margins || !formula.step) return null;
@@ -34,10 +34,10 @@ function speedsOf(drive) {
 }
 
 function gapsOf(drive, direction) {
-  const found = drive.distances.filter((x) => x.direction === direction);
-  if (!found.length) return null;
+  const distances = drive.distances.filter((x) => x.direction === direction);
+  if (!distances.length) return null;
   const colours = coloursOf(Object.keys(drive.vehicles));
-  const lines = found.flatMap((x) => [
+  const lines = distances.flatMap((x) => [
     { label: `gap ${x.one}–${x.other}`, values: x.gap, stroke: colours[x.other] },
     { label: `RSS ${x.one}–${x.other}`, values: x.needed, stroke: colours[x.other], dash: [6, 4] },
   ]);
@@ -50,12 +50,12 @@ function clockOf(drive) {
   return Array.from({ length: count + 1 }, (_, k) => k * drive.grain);
 }
 
-/** Three plots below the strips, to the same clock; `gutter` px are left of it. */
+/** The plots below the strips, on the same time axis; the names at its left are `gutter` px wide. */
 export function Curves({ doc, look, gutter, theme }) {
   const { formula, id } = look.selected.value;
-  const chosen = doc.formulas[formula] ?? doc.formulas[0];
+  const selected = doc.formulas[formula] ?? doc.formulas[0];
   const plots = [
-    marginOf(chosen, id, doc.drive),
+    marginOf(selected, id, doc.drive),
     speedsOf(doc.drive),
     gapsOf(doc.drive, "along"),
     gapsOf(doc.drive, "across"),
@@ -68,19 +68,19 @@ export function Curves({ doc, look, gutter, theme }) {
 function Plot({ plot, drive, look, gutter, theme }) {
   const place = useRef(null);
   useEffect(() => {
-    let made = null;
+    let instance = null;
     let isGone = false;
     const make = () => {
       if (isGone) return;
-      made?.destroy();
-      made = draw(place.current, plot, drive, look, gutter);
+      instance?.destroy();
+      instance = draw(place.current, plot, drive, look, gutter);
     };
     make();
-    const stop = look.time.subscribe(() => made?.redraw(false, false));
+    const stop = look.time.subscribe(() => instance?.redraw(false, false));
     const stopTheme = theme ? theme.subscribe(() => requestAnimationFrame(make)) : () => {};
     const watching = new ResizeObserver(() => {
       const width = place.current?.clientWidth;
-      if (made && width) made.setSize({ width, height: HEIGHT });
+      if (instance && width) instance.setSize({ width, height: HEIGHT });
     });
     watching.observe(place.current);
     return () => {
@@ -88,7 +88,7 @@ function Plot({ plot, drive, look, gutter, theme }) {
       stop();
       stopTheme();
       watching.disconnect();
-      made?.destroy();
+      instance?.destroy();
     };
   }, [plot.title, JSON.stringify(plot.lines.map((x) => x.values)), gutter]);
   return html`<figure class="plot">
@@ -132,7 +132,7 @@ function draw(place, plot, drive, look, gutter) {
       })),
     ],
     hooks: {
-      draw: [(u) => paintClock(u, look.time.peek(), plot.zero)],
+      draw: [(u) => paintPlayhead(u, look.time.peek(), plot.zero)],
       ready: [
         (u) =>
           u.over.addEventListener("click", (event) => {
@@ -146,7 +146,7 @@ function draw(place, plot, drive, look, gutter) {
   return new UPlot(options, [plot.clock, ...plot.lines.map((x) => x.values)], place);
 }
 
-/** The least and the greatest value with some room, and 0 where it tells true from false. */
+/** Return the range of values with some room, including 0 where the sign matters. */
 function rangeOf(plot) {
   const values = plot.lines.flatMap((x) => x.values).filter((x) => x !== null);
   if (plot.zero) values.push(0);
@@ -157,7 +157,7 @@ function rangeOf(plot) {
   return [low - room, high + room];
 }
 
-function paintClock(u, time, zero) {
+function paintPlayhead(u, time, zero) {
   const brush = u.ctx;
   const x = u.valToPos(time, "x", true);
   brush.save();

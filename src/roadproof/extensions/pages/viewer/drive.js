@@ -1,7 +1,7 @@
-// What can be computed from the document of a drive: where a vehicle is, what is true, what is needed.
+// Computes states of vehicles, truth and required distances from the document of a drive.
 // Units are those of the document: m, m/s, m/s^2, m/s^3, s.
 
-/** The state of a vehicle at a time: [time, s, d, v_lon, v_lat, a_lon, a_lat, j_lon] of its last knot, moved on. */
+/** Return the state of a vehicle at a time, from its last knot [time, s, d, v_lon, v_lat, a_lon, a_lat, j_lon]. */
 export function stateAt(vehicle, time) {
   const knots = vehicle.knots;
   let knot = knots[0];
@@ -9,8 +9,8 @@ export function stateAt(vehicle, time) {
     if (next[0] > time) break;
     knot = next;
   }
-  const [begun, s, d, vLon, vLat, aLon, aLat, jLon] = knot;
-  const t = time - begun;
+  const [start, s, d, vLon, vLat, aLon, aLat, jLon] = knot;
+  const t = time - start;
   return {
     s: s + t * (vLon + t * (aLon / 2 + (jLon * t) / 6)),
     d: d + t * (vLat + (aLat * t) / 2),
@@ -30,13 +30,13 @@ export function isTrue(part, time) {
   );
 }
 
-/** The instants up to a horizon at which the truth of a part changes. */
+/** Return the instants up to a horizon at which the truth of a part changes. */
 export function switchesOf(part, horizon) {
   const ends = part.true.flatMap(([begin, end]) => [begin, end]);
   return [...new Set(ends.filter((x) => x !== null && x > 0 && x <= horizon))];
 }
 
-/** The value of a curve sampled every grain seconds, null where it has none. */
+/** Return the value of a curve sampled every `grain` seconds, null where it has none. */
 export function sampled(values, grain, time) {
   const k = Math.max(0, Math.min(values.length - 1, Math.floor(time / grain)));
   const next = Math.min(values.length - 1, k + 1);
@@ -45,8 +45,8 @@ export function sampled(values, grain, time) {
   return values[k] + share * (values[next] - values[k]);
 }
 
-/** Who has to keep a distance to whom at a time, the one behind or the right one, and how much (m). */
-export function keptAt(drive, distance, time) {
+/** Return the vehicle that has to keep an RSS distance at a time (the one behind or at the right), the distance and the gap (m). */
+export function requiredAt(drive, distance, time) {
   const k = Math.max(0, Math.min(distance.one_behind.length - 1, Math.floor(time / drive.grain + 1e-9)));
   const [keeper, other] = distance.one_behind[k]
     ? [distance.one, distance.other]
@@ -55,7 +55,7 @@ export function keptAt(drive, distance, time) {
   return { keeper, other, needed, gap: sampled(distance.gap, drive.grain, time) };
 }
 
-/** What of the road has to be seen along it, in m from the front of the first vehicle. */
+/** Return the visible span along the road, in m from the front of the first vehicle. */
 export function windowOf(drive) {
   const vehicles = Object.values(drive.vehicles);
   let low = Infinity;
@@ -70,7 +70,7 @@ export function windowOf(drive) {
     }
     for (const distance of drive.distances) {
       if (distance.direction !== "along") continue;
-      const { keeper, needed } = keptAt(drive, distance, time);
+      const { keeper, needed } = requiredAt(drive, distance, time);
       if (needed > 0) high = Math.max(high, stateAt(drive.vehicles[keeper], time).s - origin + needed);
     }
   }
@@ -78,14 +78,14 @@ export function windowOf(drive) {
   return [Math.min(-20, low - room), Math.max(20, high + room)];
 }
 
-/** The widest extent of the road across it, from the right to the left edge. */
+/** Return the right and the left edge of the road. */
 export function acrossOf(road) {
   const ends = road.lanelets.flatMap((x) => x.d);
   return [Math.min(...ends), Math.max(...ends)];
 }
 
-/** A number as people read it. */
-export function shown(value, digits = 3) {
+/** Return a number as text with some significant digits. */
+export function formatNumber(value, digits = 3) {
   if (value === null || value === undefined) return "–";
   const text = Number(value).toPrecision(digits);
   return text.includes("e") ? text : String(Number(text));

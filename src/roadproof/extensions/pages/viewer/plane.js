@@ -1,13 +1,13 @@
-// Where places of a road with bends are: one projection from (s, d) to the plane, which all scenes use.
+// Projects places (s, d) of a road with bends to the plane, for all scenes.
 // Units are m and rad. Points of a view are [ahead, to the left] of the road at the middle of the window.
 
 import { acrossOf, stateAt, windowOf } from "viewer/drive";
 
 const STEP = 2; // metres between points of an edge
-const VIEWS = 24; // from so many instants the scale is chosen
-const KNOWN = new WeakMap();
+const VIEWS = 24; // the number of instants from which the scale is chosen
+const EXTENTS = new WeakMap(); // by drive
 
-/** The line of a road at s: cubics between its samples, straight on beyond them. */
+/** Return the pose of a road's line at s: cubic between its samples, straight beyond them. */
 function poseOn(line, s) {
   const last = line.length - 1;
   const inside = Math.max(line[0][0], Math.min(line[last][0], s));
@@ -26,7 +26,7 @@ function poseOn(line, s) {
   return { x: x + beyond * Math.cos(heading), y: y + beyond * Math.sin(heading), heading };
 }
 
-/** The road as it is seen at a time: functions from places to points; null where it is straight. */
+/** Return functions from places to points for the view at a time; null for a straight road. */
 export function viewOf(drive, time) {
   const { line } = drive.road;
   if (!line) return null;
@@ -54,13 +54,13 @@ export function viewOf(drive, time) {
   };
 }
 
-/** What the road in the window takes of the plane, over all times: left, right, bottom, top. */
+/** Return the extent of the visible road in the plane, over all times: left, right, bottom, top. */
 export function extentOf(drive) {
-  if (!KNOWN.has(drive)) KNOWN.set(drive, measured(drive));
-  return KNOWN.get(drive);
+  if (!EXTENTS.has(drive)) EXTENTS.set(drive, measureExtent(drive));
+  return EXTENTS.get(drive);
 }
 
-function measured(drive) {
+function measureExtent(drive) {
   const [low, high] = windowOf(drive);
   const points = [];
   for (let k = 0; k <= VIEWS; k += 1) {

@@ -1,8 +1,8 @@
-// The road from above, driving direction to the right, the first vehicle always at the same place.
+// Draws the road from above, driving direction to the right, with the first vehicle always at the same place.
 
 import { html, useEffect, useRef } from "vendor/view";
 import { colour, coloursOf, font } from "viewer/palette";
-import { acrossOf, keptAt, shown, stateAt, windowOf } from "viewer/drive";
+import { acrossOf, formatNumber, requiredAt, stateAt, windowOf } from "viewer/drive";
 import { extentOf, viewOf } from "viewer/plane";
 
 const ZONES = { main: "main road", merge: "merge zone", depart: "departure zone" };
@@ -12,7 +12,7 @@ const MOST_STRETCH = 6;
 const LETTERS = 13; // pixels for a line of words
 const HIGHEST = 420; // pixels of a road with bends, which is to scale
 
-/** A canvas of the scene at `time`, which is a signal; `toScale` is one too. */
+/** A canvas of the scene; `time` and `toScale` are signals. */
 export function Scene({ drive, time, toScale, theme }) {
   const canvas = useRef(null);
   useEffect(() => {
@@ -32,12 +32,12 @@ export function Scene({ drive, time, toScale, theme }) {
   return html`<canvas class="scene" ref=${canvas} role="img" aria-label="The road from above"></canvas>`;
 }
 
-/** What the scene shows, in words, for those who do not see it. */
+/** Return the scene in words, for screen readers. */
 export function describe(drive, time) {
   return Object.entries(drive.vehicles)
     .map(([name, vehicle]) => {
       const x = stateAt(vehicle, time);
-      return `${name}: s ${shown(x.s, 4)} m, d ${shown(x.d)} m, ${shown(x.vLon * 3.6)} km/h`;
+      return `${name}: s ${formatNumber(x.s, 4)} m, d ${formatNumber(x.d)} m, ${formatNumber(x.vLon * 3.6)} km/h`;
     })
     .join("; ");
 }
@@ -46,7 +46,7 @@ function paint(canvas, drive, time, toScale) {
   if (!canvas || !canvas.clientWidth) return;
   const ratio = window.devicePixelRatio || 1;
   const width = canvas.clientWidth;
-  const place = placing(drive, time, width, toScale);
+  const place = projection(drive, time, width, toScale);
   if (place.bends) canvas.style.height = `${place.height}px`;
   canvas.width = Math.round(width * ratio);
   canvas.height = Math.round(place.height * ratio);
@@ -57,22 +57,22 @@ function paint(canvas, drive, time, toScale) {
   if (place.bends) paintBar(brush, drive, place);
   else paintScale(brush, place);
   const colours = coloursOf(Object.keys(drive.vehicles));
-  const needs = drive.distances.map((distance) => paintNeeded(brush, drive, distance, time, place, colours));
+  const needs = drive.distances.map((distance) => paintRequired(brush, drive, distance, time, place, colours));
   const boxes = Object.keys(drive.vehicles).map((name) => paintVehicle(brush, drive, name, time, place, colours));
-  boxes.forEach((box, k) => nameVehicle(brush, box, boxes.filter((_, other) => other !== k), place));
-  for (const need of needs) if (need) nameDistance(brush, need, boxes, place);
-  const told = `${describe(drive, time)}`;
-  canvas.setAttribute("aria-label", `The road from above at ${time.toFixed(2)} s: ${told}`);
+  boxes.forEach((box, k) => labelVehicle(brush, box, boxes.filter((_, other) => other !== k), place));
+  for (const need of needs) if (need) labelDistance(brush, need, boxes, place);
+  const description = `${describe(drive, time)}`;
+  canvas.setAttribute("aria-label", `The road from above at ${time.toFixed(2)} s: ${description}`);
 }
 
-/** From places of the road (m) to pixels: points, ways along the road, areas to fill, and the turn of the road (rad). */
-function placing(drive, time, width, toScale) {
+/** Return functions from places of the road (m) to px: points, lines along the road, areas, and its turn (rad). */
+function projection(drive, time, width, toScale) {
   const [low, high] = windowOf(drive);
   const [right, left] = acrossOf(drive.road);
   const origin = stateAt(Object.values(drive.vehicles)[0], time).s;
   const common = { low, high, right, left, origin, width, letters: 0, labels: [] };
   const view = viewOf(drive, time);
-  if (view) return { ...common, ...bentPlacing(drive, view, width) };
+  if (view) return { ...common, ...bentProjection(drive, view, width) };
   const along = width / (high - low);
   const room = HEIGHT - MARGIN.top - MARGIN.bottom;
   const fitting = Math.max(1, Math.min(MOST_STRETCH, room / (left - right) / along));
@@ -86,8 +86,8 @@ function placing(drive, time, width, toScale) {
   return { ...common, along, across, stretch, height: HEIGHT, point, way, fill, turn: () => 0 };
 }
 
-/** The same on a road with bends, which is to scale. */
-function bentPlacing(drive, view, width) {
+/** Return the projection for a road with bends, which is to scale. */
+function bentProjection(drive, view, width) {
   const [begin, end, bottom, top] = extentOf(drive);
   const along = Math.min(width / (end - begin), (HIGHEST - MARGIN.top - MARGIN.bottom) / (top - bottom));
   const room = Math.max(HEIGHT - MARGIN.top - MARGIN.bottom, (top - bottom) * along);
@@ -138,7 +138,7 @@ function paintRoad(brush, drive, place) {
   }
 }
 
-/** On a bend a length in m, as places along the picture are none along the road. */
+/** Draw a scale bar on a road with bends, where distances along the picture are not distances along the road. */
 function paintBar(brush, drive, place) {
   const step = [5, 10, 20, 50, 100].find((x) => x * place.along > 56) ?? 200;
   const y = place.height - 8;
@@ -149,7 +149,7 @@ function paintBar(brush, drive, place) {
   brush.font = font(11);
   brush.textAlign = "left";
   const { error } = drive.road;
-  const bends = error ? ` · lengths differ by up to ${shown(error[0], 2)} %, ${shown(error[1], 2)} m` : "";
+  const bends = error ? ` · lengths differ by up to ${formatNumber(error[0], 2)} %, ${formatNumber(error[1], 2)} m` : "";
   brush.fillText(`${step} m${bends}`, 14 + step * place.along, y);
   brush.textAlign = "right";
   brush.fillText("to scale · driving direction →", place.width - 6, 13);
@@ -171,9 +171,9 @@ function paintScale(brush, place) {
   brush.fillText(`m from the first front · ${stretched} · driving direction →`, place.width - 6, 13);
 }
 
-/** The RSS distance that the one behind, or the right one, has to keep, around that one; its words, if they fit. */
-function paintNeeded(brush, drive, distance, time, place, colours) {
-  const { keeper, other, needed, gap } = keptAt(drive, distance, time);
+/** Draw the RSS distance of the vehicle that has to keep it; return its label, if that fits. */
+function paintRequired(brush, drive, distance, time, place, colours) {
+  const { keeper, other, needed, gap } = requiredAt(drive, distance, time);
   if (needed === null || needed <= 0) return null;
   const { length, width } = drive.vehicles[keeper];
   const { s, d } = stateAt(drive.vehicles[keeper], time);
@@ -197,11 +197,11 @@ function paintNeeded(brush, drive, distance, time, place, colours) {
   const high = width * place.across;
   const fits = ahead && needed * place.along > 110 && high >= place.letters;
   const below = high > 34 ? high - 5 : high / 2 + 4; // below the names of vehicles
-  return fits ? { at: [s, d], below, words: `RSS to ${other} ${shown(needed)} m` } : null;
+  return fits ? { at: [s, d], below, words: `RSS to ${other} ${formatNumber(needed)} m` } : null;
 }
 
-/** Write how long an RSS distance is, unless the words would cover a label or a vehicle. */
-function nameDistance(brush, { at, below, words }, boxes, place) {
+/** Write the length of an RSS distance, unless the label would cover another one or a vehicle. */
+function labelDistance(brush, { at, below, words }, boxes, place) {
   brush.fillStyle = colour("--ink");
   brush.font = font(11);
   brush.textAlign = "left";
@@ -231,11 +231,11 @@ function paintVehicle(brush, drive, name, time, place, colours) {
   const [cos, sin] = [Math.abs(Math.cos(turn)), Math.abs(Math.sin(turn))];
   const [wide, tall] = [cos * long + sin * high, sin * long + cos * high];
   const flat = high < place.letters;
-  return { x: x - wide / 2, y: y - tall / 2, wide, tall, flat, words: `${name} ${shown(vLon * 3.6)} km/h` };
+  return { x: x - wide / 2, y: y - tall / 2, wide, tall, flat, words: `${name} ${formatNumber(vLon * 3.6)} km/h` };
 }
 
-/** Write the name of a vehicle beside its box, at the first place where it covers no label and no other box. */
-function nameVehicle(brush, box, others, place) {
+/** Write the name of a vehicle beside its box, at the first place where it covers nothing. */
+function labelVehicle(brush, box, others, place) {
   brush.fillStyle = colour("--ink");
   brush.font = font(12, 600);
   brush.textAlign = "left";
@@ -256,14 +256,14 @@ function nameVehicle(brush, box, others, place) {
   brush.fillText(box.words, spot.x, spot.y + LETTERS - 3);
 }
 
-/** Whether two boxes of pixels share a place. */
+/** Whether two boxes in px overlap. */
 export function overlap(one, other) {
   const across = Math.abs(one.x + one.wide / 2 - other.x - other.wide / 2);
   const down = Math.abs(one.y + one.tall / 2 - other.y - other.tall / 2);
   return 2 * across < one.wide + other.wide && 2 * down < one.tall + other.tall;
 }
 
-/** Words beside a place of the road, in its direction; on a straight road no name of a vehicle will cover them. */
+/** Write words beside a place of the road, in its direction; on a straight road no later label will cover them. */
 function write(brush, place, [s, d], words, [ahead, below]) {
   const [x, y] = place.point(s, d);
   if (!place.bends) {

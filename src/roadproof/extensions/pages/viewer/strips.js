@@ -1,13 +1,13 @@
-// The tree of sub-formulas, each with when it is true, on one clock.
+// The tree of sub-formulas; each has a strip that shows when it is true, on one time axis.
 
 import { html, useEffect, useMemo } from "vendor/view";
 import { isTrue, switchesOf } from "viewer/drive";
 import { meaningOf, Term } from "viewer/terms";
 
 const JOINED = { and: "all of", or: "some of", not: "not", F: "F", G: "G", U: "U" };
-const SNAP = 7; // pixels around a switch that are the switch
+const SNAP = 7; // px around a switch within which a click moves to it
 
-/** Whether a part is shown with its children at first: the whole, and what is only put together of names. */
+/** Whether a part is unfolded at first because it only combines named parts. */
 function isTemplate(formula, id) {
   const part = formula.parts[id];
   if (part.op !== "name") return false;
@@ -20,7 +20,7 @@ function isNamed(formula, id) {
   return part.op === "name" || part.op === "truth";
 }
 
-/** What is shown below a part: of a name what its body is made of, of others their parts. */
+/** Return the parts below a part; those of a name are the parts of its body. */
 export function childrenOf(formula, id) {
   const part = formula.parts[id];
   if (part.op !== "name") return part.children;
@@ -28,7 +28,7 @@ export function childrenOf(formula, id) {
   return body && (body.op === "and" || body.op === "or") ? body.children : part.children;
 }
 
-/** How the parts below are put together, in a word. */
+/** Return the operator that joins the parts below, in words. */
 function joinOf(formula, id) {
   const part = formula.parts[id];
   if (part.op === "name") {
@@ -38,7 +38,7 @@ function joinOf(formula, id) {
   return JOINED[part.op] ?? "";
 }
 
-/** Parts that are open at first. */
+/** Return the keys of the parts that are unfolded at first. */
 export function openAtFirst(formula) {
   const open = new Set();
   const visit = (id, path) => {
@@ -52,7 +52,7 @@ export function openAtFirst(formula) {
   return open;
 }
 
-/** What has to be open for the reasons to be seen, down to the comparisons. */
+/** Return the keys to unfold so that the reasons of an explanation are visible, down to the comparisons. */
 function reasonsIn(formula) {
   const keys = new Set();
   const visit = (id, path) => {
@@ -65,7 +65,7 @@ function reasonsIn(formula) {
   return keys;
 }
 
-/** The rows that are seen: parts with their depth, each known by its path from the whole. */
+/** Return the visible rows: parts with their depth; the key of each is its path from the whole. */
 export function rowsOf(formula, open) {
   const rows = [];
   const visit = (id, path, depth) => {
@@ -79,17 +79,17 @@ export function rowsOf(formula, open) {
 }
 
 /**
- * The strips of one formula. `look` holds the signals time, selected ({formula, key, id}) and open (a map
- * from the index of a formula to a set of keys); `index` is that of the formula. `beside` is another one,
- * such as the same before an edit: a part of the same name has its strip below.
+ * The strips of one formula. `look` has the signals time, selected ({formula, key, id}) and open (a map
+ * from the index of a formula to a set of keys); `index`: that of the formula. `reference`: another formula,
+ * such as the one before an edit; the strip of its part with the same text is drawn below.
  */
-export function Strips({ formula, index, drive, look, title, beside = null }) {
+export function Strips({ formula, index, drive, look, title, reference = null }) {
   const isFolded = formula.role === "before";
   const first = useMemo(
     () => (isFolded ? new Set() : openAtFirst(formula)),
     [formula.text, formula.parts?.length, isFolded],
   );
-  const others = useMemo(() => new Map((beside?.parts ?? []).map((x) => [x.text, x])), [beside]);
+  const others = useMemo(() => new Map((reference?.parts ?? []).map((x) => [x.text, x])), [reference]);
   const open = look.open.value.get(index) ?? first;
   const rows = rowsOf(formula, open);
   useEffect(() => {
@@ -135,7 +135,7 @@ export function Strips({ formula, index, drive, look, title, beside = null }) {
   };
   return html`<section class=${`strips ${formula.role}`} aria-label=${title}>
     <h3>${title} ${html`<span class=${formula.undecided ? "" : formula.holds ? "holds" : "fails"}>${formula.undecided ? "undecided" : formula.holds ? "true" : "false"} at 0 s</span>`} ${index === 0 ? html`<${Term} name="strip" label="strips?" />` : null}</h3>
-    ${beside?.parts
+    ${reference?.parts
       ? html`<p class="legend"><span><i style=${{ background: "var(--true)" }}></i>after the edit</span><span><i style=${{ background: "var(--four)" }}></i>before the edit</span></p>`
       : null}
     <div class="tree" role="tree" tabindex="0" aria-label=${title} aria-describedby=${about ? `about-${index}` : undefined} onKeyDown=${onKey}>
@@ -156,7 +156,7 @@ export function Strips({ formula, index, drive, look, title, beside = null }) {
   </section>`;
 }
 
-/** What a part means, and when it is true. */
+/** Return the meaning of a part, and when it is true. */
 function saysOf(part) {
   return [part.says, meaningOf(part.text), `true: ${part.exact}`].filter(Boolean);
 }
@@ -211,7 +211,7 @@ function Row({ row, part, drive, look, chosen, join, because, other, onFold, onS
   </div>`;
 }
 
-/** Move the clock to the next switch of a part, or with -1 to the one before. */
+/** Move the time to the next switch of a part, or with direction -1 to the one before. */
 export function jumpToSwitch(part, drive, look, direction) {
   const switches = [0, ...switchesOf(part, drive.horizon), drive.horizon].sort((a, b) => a - b);
   const now = look.time.value;

@@ -1,4 +1,4 @@
-// What the words of the viewer mean: the one place of these texts, and a word that shows its own.
+// Explanations of the viewer's terms, and a term that shows its own.
 
 import { html, useMemo } from "vendor/view";
 
@@ -27,7 +27,7 @@ export const TERMS = {
 
 let count = 0;
 
-/** A word with its meaning, which is seen while the word has the pointer or the focus; Escape hides it. */
+/** A term with its meaning, which is visible while the term has the pointer or the focus; Escape hides it. */
 export function Term({ name, label = TERMS[name].word }) {
   const id = useMemo(() => `term-${(count += 1)}`, []);
   const onKey = (event) => {
@@ -41,7 +41,7 @@ export function Term({ name, label = TERMS[name].word }) {
   </span>`;
 }
 
-/** The meaning of a part of a formula where its name is one of the words; else nothing. */
+/** Return the meaning of a part of a formula whose name is one of the terms, else "". */
 export function meaningOf(text) {
   const name = { danger: "danger", rssViolation: "envelope", rssViolation_lon: "envelope", rssViolation_lat: "envelope" }[/^\w+/.exec(text)?.[0]];
   return name ? TERMS[name].says : "";

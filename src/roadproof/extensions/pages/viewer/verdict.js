@@ -1,4 +1,4 @@
-// An answer: its verdict, what that promises, why, and what can be taken along.
+// An answer: its verdict with an explanation, the reason, and downloads.
 
 import { html } from "vendor/view";
 
@@ -13,7 +13,7 @@ const PROMISES = {
   UNKNOWN: "Nothing is promised; the reason is below.",
   JUDGED: "Judged exactly on the drive that is shown, in dense and unbounded time.",
 };
-const KINDS = {
+const TONES = {
   PROVED: "yes",
   WITNESSED: "yes",
   REFUTED: "no",
@@ -24,12 +24,12 @@ const KINDS = {
   "PROVED-BOUNDED": "open",
 };
 
-/** How a verdict is coloured: yes, no, open, or not at all. */
-export const toneOf = (verdict) => KINDS[verdict] ?? "";
+/** Return the colour class of a verdict: yes, no, open, or "". */
+export const toneOf = (verdict) => TONES[verdict] ?? "";
 
 /**
- * One answer; `downloads` are {name, content} with texts, `onCopy` copies a text, `shows` are {name, show}, its
- * drives; `cost` tells what it cost, beside `onAgain`, which computes it again.
+ * One answer. `downloads`: {name, content} with texts; `onCopy` copies a text; `shows`: {name, show} of its
+ * drives; `cost`: its cost in words; `onAgain` computes it again.
  */
 export function Verdict({ answer, downloads = [], onCopy = null, shows = [], cost = "", onAgain = null }) {
   if (!answer) return null;
@@ -54,7 +54,7 @@ export function Verdict({ answer, downloads = [], onCopy = null, shows = [], cos
   </section>`;
 }
 
-/** Hand a text to the browser as a file. */
+/** Save a text as a file of the browser. */
 export function save({ name, content, kind = "application/json" }) {
   const link = document.createElement("a");
   const url = URL.createObjectURL(new Blob([content], { type: kind }));

@@ -1,4 +1,4 @@
-// A judged drive on a page: scene, clock, strips, curves. It needs the document alone, and no server.
+// The viewer of a judged drive: scene, clock, strips and curves. It needs only the document, and no server.
 //
 //   import { mount } from "viewer/viewer";
 //   mount(element, document_)          // the data of roadproof.extensions.pages.viewer_data
@@ -10,10 +10,10 @@ import { Strips } from "viewer/strips";
 import { Term } from "viewer/terms";
 import { Verdict } from "viewer/verdict";
 
-const GUTTER = { least: 130, most: 340, share: 0.42 }; // names left of the clock: pixels, and of the width
+const GUTTER = { least: 130, most: 340, share: 0.42 }; // width of the names left of the time axis: px, and share of the whole
 const TITLES = { question: "Question", watch: "Watch", before: "Before the edit", after: "After the edit" };
 
-/** What is looked at: the time, the selected part, what is unfolded; signals that a page may share. */
+/** Return the signals of a view: the time, the selected part, the unfolded parts; a page may share them. */
 export function makeLook() {
   return {
     time: signal(0),
@@ -24,8 +24,8 @@ export function makeLook() {
   };
 }
 
-/** Scene, clock, strips and curves of a document. `titles` are other titles of formulas, by role. */
-export function Viewer({ doc, look, titles = {}, theme = null, beside = null }) {
+/** The viewer of a document. `titles`: titles of formulas by role; `footer`: content below. */
+export function Viewer({ doc, look, titles = {}, theme = null, footer = null }) {
   const drive = doc.drive;
   const place = useRef(null);
   const gutter = useGutter(place);
@@ -40,23 +40,23 @@ export function Viewer({ doc, look, titles = {}, theme = null, beside = null }) 
         (formula, index) => html`<${Strips}
           key=${`${index}-${formula.role}`}
           ...${{ formula, index, drive, look }}
-          beside=${formula.role === "question" ? doc.formulas.find((x) => x.role === "before") : null}
+          reference=${formula.role === "question" ? doc.formulas.find((x) => x.role === "before") : null}
           title=${titleOf(formula, titles)}
         />`,
       )}
       <${Curves} ...${{ doc, look, gutter, theme }} />
     </div>
-    ${beside}
+    ${footer}
   </div>`;
 }
 
-/** How many pixels of the width of an element names have. */
+/** Return the width of the names in px, which follows the width of an element. */
 function useGutter(place) {
   const [gutter, set] = useState(GUTTER.most);
   useEffect(() => {
     const measure = () => {
-      const wanted = Math.round(place.current.clientWidth * GUTTER.share);
-      set(Math.max(GUTTER.least, Math.min(GUTTER.most, wanted)));
+      const width = Math.round(place.current.clientWidth * GUTTER.share);
+      set(Math.max(GUTTER.least, Math.min(GUTTER.most, width)));
     };
     measure();
     const watching = new ResizeObserver(measure);
@@ -67,8 +67,8 @@ function useGutter(place) {
 }
 
 function titleOf(formula, titles) {
-  const said = titles[formula.role] ?? TITLES[formula.role] ?? formula.role;
-  return formula.role === "watch" ? `${said}: ${formula.formula}` : said;
+  const title = titles[formula.role] ?? TITLES[formula.role] ?? formula.role;
+  return formula.role === "watch" ? `${title}: ${formula.formula}` : title;
 }
 
 function Playhead({ drive, look }) {
@@ -77,7 +77,7 @@ function Playhead({ drive, look }) {
   return html`<div class="playhead" style=${style} aria-hidden="true"></div>`;
 }
 
-/** Playback, the time, and a scrubber that lies above the strips. */
+/** The controls of playback, the time, and a scrubber above the strips. */
 export function Clock({ drive, look }) {
   const set = (event) => {
     look.playing.value = false;
@@ -99,7 +99,7 @@ export function Clock({ drive, look }) {
   </div>`;
 }
 
-/** Begin or end playback; at the end it begins again. */
+/** Start or pause playback; at the end it restarts. */
 export function toggle(look, drive) {
   if (!look.playing.value && look.time.value >= drive.horizon) look.time.value = 0;
   look.playing.value = !look.playing.value;
@@ -128,10 +128,10 @@ function play(look, drive) {
   };
 }
 
-/** The viewer for one document, in an element of a page of its own. */
+/** Show the viewer of a document in an element; return its signals. */
 export function mount(element, doc) {
   const look = makeLook();
-  const beside = doc.verdict?.verdict ? html`<${Verdict} answer=${doc.verdict} />` : null;
-  render(html`<${Viewer} ...${{ doc, look, beside }} />`, element);
+  const footer = doc.verdict?.verdict ? html`<${Verdict} answer=${doc.verdict} />` : null;
+  render(html`<${Viewer} ...${{ doc, look, footer }} />`, element);
   return look;
 }

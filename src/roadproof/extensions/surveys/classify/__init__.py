@@ -1,1 +1,1 @@
-"""Classes of scenarios that exclude each other: a drive for each, and what is proved of them."""
+"""Mutually exclusive classes of scenarios, with a drive for each and proofs about them."""

@@ -1,31 +1,26 @@
-"""A partition out of formulas that overlap: for each choice of them that can hold together, exactly these.
+"""A partition made of formulas that overlap.
 
-Rows are formulas of one trace; a cell is where some rows hold and the others do not. Rows that are proved
-to exclude each other need not be denied, and a cell that is proved to be empty is left out, so that few
-cells with short texts remain. What could not be proved is taken as possible: the cells that remain are a
-partition of the union of the rows, whether or not every one of them can be had.
+Rows are formulas of one trace. A cell is a choice of rows that hold while the others do not. A cell that is
+proved empty is left out, and rows that are proved to exclude each other need no denial. So few cells with
+short texts remain. A cell counts as possible unless it is proved empty. So the cells are a partition of the
+union of the rows, even if some of them never occur.
 """
 
-from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
-from roadproof.evidence.answer import Answer
-from roadproof.evidence.claim import Claim, valid_under
+from roadproof.evidence.assuming import valid_under
+from roadproof.extensions.surveys.extremes.points import ClaimGenerator
 from roadproof.library.compose import both, equivalence, implication, negation
 from roadproof.library.specification import Query, Specification
 from roadproof.reasons import NO_REASON, Reason
 
-T = TypeVar("T")
-Asked = Generator[tuple[str, Claim], Answer, T]
-"""Yields claims with their names, is sent the answers, and returns what they show."""
-
 
 @dataclass(frozen=True)
 class Axis:
-    """What is divided: ``rows`` by number, where all of ``context`` holds.
+    """An axis of the division: formulas ``rows`` by number, under the premises ``context``.
 
-    ``parts`` of a row are formulas that follow from it, and may stand for it where the rest says as much.
+    ``parts``: for each row, formulas that follow from it and may replace it in the text of a cell.
     """
 
     context: tuple[Query, ...]
@@ -35,40 +30,40 @@ class Axis:
 
 @dataclass(frozen=True)
 class Cell:
-    """Exactly the rows ``holds`` hold. That is said by the rows ``said`` and by ``denied``, formulas."""
+    """A cell in which exactly the rows ``holds`` hold; its formula requires some rows and denies formulas."""
 
     holds: tuple[int, ...]
-    said: tuple[int, ...]
+    required: tuple[int, ...]
     denied: tuple[Query, ...]
 
 
 @dataclass(frozen=True)
 class Outline:
-    """The rows of each cell, with those that are denied in it; ``empty``: what is proved never to hold."""
+    """The rows that hold and those that are denied in each cell; ``empty``: formulas proved never to hold."""
 
     cells: tuple[tuple[tuple[int, ...], tuple[int, ...]], ...]
     empty: tuple[Query, ...]
 
 
 @dataclass(frozen=True)
-class Undivided:
-    """Why an axis has no outline."""
+class OutlineFailure:
+    """The reason why an axis has no outline."""
 
     reason: Reason
 
 
-class _Late(Exception):
+class _LateProof(Exception):
     """A proof that was lost, or cut off by the clock."""
 
     def __init__(self, reason: Reason) -> None:
         self.reason = reason
 
 
-def _is_proved(home: Specification, name: str, query: Query) -> Asked[bool]:
-    """Ask whether ``query`` holds on all traces, and return whether that is proved. Raises ``_Late``."""
+def _is_proved(home: Specification, name: str, query: Query) -> ClaimGenerator[bool]:
+    """Ask whether ``query`` holds on all traces, and return whether that is proved. Raises ``_LateProof``."""
     answer = yield name, valid_under(home, query)
     if answer.reason.is_late:
-        raise _Late(answer.reason)
+        raise _LateProof(answer.reason)
     return answer.certificate is not None
 
 
@@ -77,31 +72,31 @@ def _joined(numbers: Iterable[int]) -> str:
 
 
 def whole_cell(axis: Axis, holds: Sequence[int], others: Sequence[int]) -> Cell:
-    """The cell where ``holds`` hold and ``others`` do not, with all of that said."""
+    """Return the cell where ``holds`` hold and ``others`` do not, without a shorter text."""
     return Cell(tuple(holds), tuple(holds), tuple(axis.rows[number] for number in others))
 
 
 def query_of(axis: Axis, cell: Cell) -> Query:
-    """The formula of a cell, context included."""
-    return both(*axis.context, *(axis.rows[number] for number in cell.said), *map(negation, cell.denied))
+    """Return the formula of a cell, premises included."""
+    return both(*axis.context, *(axis.rows[number] for number in cell.required), *map(negation, cell.denied))
 
 
-def outline(axis: Axis, home: Specification, name: str) -> Asked[Outline | Undivided]:
-    """Ask which choices of rows never hold, and return the cells of an axis but for those proved empty.
+def outline(axis: Axis, home: Specification, name: str) -> ClaimGenerator[Outline | OutlineFailure]:
+    """Ask which choices of rows never hold, and return the cells of an axis that are not proved empty.
 
-    ``name``: how the names of its claims begin. A proof that was lost or cut off would make other classes,
-    so there are none then.
+    ``name``: the beginning of the names of its claims. A lost or interrupted proof would change the cells. So
+    the outline fails then.
     """
     try:
         return (yield from _outline(axis, home, name))
-    except _Late as late:
-        return Undivided(late.reason)
+    except _LateProof as late:
+        return OutlineFailure(late.reason)
 
 
-def _outline(axis: Axis, home: Specification, name: str) -> Asked[Outline]:
+def _outline(axis: Axis, home: Specification, name: str) -> ClaimGenerator[Outline]:
     empty: list[Query] = []
 
-    def is_never(holds: Sequence[int], others: Sequence[int] = ()) -> Asked[bool]:
+    def is_never(holds: Sequence[int], others: Sequence[int] = ()) -> ClaimGenerator[bool]:
         query = query_of(axis, whole_cell(axis, holds, others))
         word = "only" if others else "any"
         proved = yield from _is_proved(home, f"{name}-{word}-{_joined(holds)}", negation(query))
@@ -109,12 +104,12 @@ def _outline(axis: Axis, home: Specification, name: str) -> Asked[Outline]:
             empty.append(query)
         return proved
 
-    def possible_of(choices: Iterable[tuple[int, ...]]) -> Asked[list[tuple[int, ...]]]:
-        found = []
+    def possible_of(choices: Iterable[tuple[int, ...]]) -> ClaimGenerator[list[tuple[int, ...]]]:
+        possible_choices = []
         for choice in choices:
             if not (yield from is_never(choice)):
-                found.append(choice)
-        return found
+                possible_choices.append(choice)
+        return possible_choices
 
     level = yield from possible_of((number,) for number in sorted(axis.rows))
     possible = set(level)
@@ -130,7 +125,7 @@ def _outline(axis: Axis, home: Specification, name: str) -> Asked[Outline]:
 
 
 def _larger(level: Sequence[tuple[int, ...]], possible: set[tuple[int, ...]]) -> Iterator[tuple[int, ...]]:
-    """Choices of one row more, all of whose smaller ones are possible."""
+    """Yield choices with one more row, of which every smaller choice is possible."""
     numbers = sorted({number for choice in possible for number in choice})
     for choice in level:
         for number in numbers:
@@ -143,42 +138,44 @@ def _larger(level: Sequence[tuple[int, ...]], possible: set[tuple[int, ...]]) ->
 
 def refine(
     axis: Axis, home: Specification, name: str, holds: Sequence[int], others: Sequence[int]
-) -> Asked[tuple[Cell, Reason]]:
-    """Ask what follows from the rest, and return the cell where ``holds`` hold and ``others`` do not without.
+) -> ClaimGenerator[tuple[Cell, Reason]]:
+    """Return the cell where ``holds`` hold and ``others`` do not, with the shortest text that proofs allow.
 
-    A part of a row stands in its place where the two are proved to be the same there. Where a proof was lost
-    or cut off, the cell is returned with all of that, and with the reason. ``name``: how the names of its
-    claims begin.
+    Rows that follow from the rest are dropped. A part replaces its row where the two are proved equivalent.
+    After a lost or interrupted proof the cell has its full text, and the reason is returned. ``name``: the
+    beginning of the names of its claims.
     """
     try:
         return (yield from _refine(axis, home, name, holds, others)), NO_REASON
-    except _Late as late:
+    except _LateProof as late:
         return whole_cell(axis, holds, others), late.reason
 
 
 def _refine(
     axis: Axis, home: Specification, name: str, holds: Sequence[int], others: Sequence[int]
-) -> Asked[Cell]:
-    def follows(word: str, said: Sequence[int], denied: Iterable[Query], conclusion: Query) -> Asked[bool]:
-        premise = query_of(axis, Cell((), tuple(said), tuple(denied)))
+) -> ClaimGenerator[Cell]:
+    def follows(
+        word: str, required: Sequence[int], denied: Iterable[Query], conclusion: Query
+    ) -> ClaimGenerator[bool]:
+        premise = query_of(axis, Cell((), tuple(required), tuple(denied)))
         return _is_proved(home, f"{name}-{word}", implication(premise, conclusion))
 
     rows = axis.rows
-    said, denied = list(holds), {n: rows[n] for n in others}
+    required, denied = list(holds), {n: rows[n] for n in others}
     for number in reversed(holds):
-        rest = [n for n in said if n != number]
+        rest = [n for n in required if n != number]
         if rest and (yield from follows(f"holds-{number}", rest, denied.values(), rows[number])):
-            said = rest
+            required = rest
     for number in others:
         rest_denied = {n: part for n, part in denied.items() if n != number}
         denial = negation(rows[number])
-        if (yield from follows(f"denies-{number}", said, rest_denied.values(), denial)):
+        if (yield from follows(f"denies-{number}", required, rest_denied.values(), denial)):
             denied = rest_denied
     for number in tuple(denied):
         around = [part for n, part in denied.items() if n != number]
         for place, part in enumerate(axis.parts.get(number, ()), 1):
             same = equivalence(part, rows[number])
-            if (yield from follows(f"part-{number}-{place}", said, around, same)):
+            if (yield from follows(f"part-{number}-{place}", required, around, same)):
                 denied[number] = part
                 break
-    return Cell(tuple(holds), tuple(said), tuple(denied.values()))
+    return Cell(tuple(holds), tuple(required), tuple(denied.values()))

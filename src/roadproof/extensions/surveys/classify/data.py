@@ -1,31 +1,31 @@
-"""Classes as plain data: what is asked of a division, and what is found."""
+"""The JSON of ``classify``: settings of the question, and its view."""
 
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers import shared
+from roadproof.evidence.answers import headings, shared
 from roadproof.evidence.codec import LEFT_OUT, Doc, Key, Rule
 from roadproof.reasons import NO_REASON
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ProofVerdict, Verdict
 
 SCHEMA: Final = "roadproof/classify/2"
-Word: TypeAlias = Literal[Verdict.WITNESSED, Verdict.UNKNOWN]
+ExampleVerdict: TypeAlias = Literal[Verdict.WITNESSED, Verdict.UNKNOWN]
 Kind: TypeAlias = Literal["exclusive", "covers", "empty"]
 Numbers: TypeAlias = Annotated[tuple[shared.Number, ...], Doc("Numbers of scenarios.")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Doubt:
-    """What would be known of the division if a job had not been lost, or cut off by the clock."""
+class UndecidedPart:
+    """A part of the division that is undecided, because a job was lost or cut off by the clock."""
 
     about: Annotated[str, Doc("What is in doubt.")]
     reason: shared.Reason
 
 
 @dataclass(frozen=True, kw_only=True)
-class DividedGroup:
+class DivisionGroupData:
     """The cells of scenarios between the same vehicles, and what is to be proved to hold never."""
 
     vehicles: Annotated[tuple[str, ...], Rule(least=2), Doc("The vehicles.")]
@@ -34,16 +34,16 @@ class DividedGroup:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Divided:
+class DivisionData:
     """A division of scenarios, whose classes a specification file defines.
 
     Nothing of it is taken for granted: it is claimed that classes exclude each other and cover the scenarios.
     """
 
     scenarios: Annotated[Numbers, Doc("The scenarios that are divided.")]
-    groups: tuple[DividedGroup, ...] = ()
+    groups: tuple[DivisionGroupData, ...] = ()
     places: Annotated[tuple[Numbers, ...], Doc("The scenarios whose road sectors make up each place.")] = ()
-    doubts: Annotated[tuple[Doubt, ...], LEFT_OUT] = ()
+    doubts: Annotated[tuple[UndecidedPart, ...], LEFT_OUT] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,9 +59,9 @@ class ClassData:
     where: Annotated[str | None, Doc("The road sectors, such as main; null where they make no difference.")]
     description: Annotated[str, Doc("What happens, in words.")]
     formula: Annotated[shared.Formula, Doc("The definition applied to the vehicles and L.")]
-    verdict: Word
+    verdict: ExampleVerdict
     reason: shared.Reason = NO_REASON
-    drive: shared.KeptDrive = None
+    drive: shared.DriveField = None
     situations: Annotated[
         shared.Count | None, Doc("Situations of the class; null where no shares are counted.")
     ] = None
@@ -82,7 +82,7 @@ class ClassClaimData:
     claim: shared.Formula
     verdict: ProofVerdict
     reason: shared.Reason = NO_REASON
-    certificate: shared.KeptCertificate = None
+    certificate: shared.CertificateField = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,7 +95,7 @@ class Situations:
 
 @dataclass(frozen=True, kw_only=True)
 class SharesData:
-    """What was counted in recordings."""
+    """The counts in recordings."""
 
     source: Annotated[str, Doc("What was counted, in words.")]
     recordings: Annotated[tuple[str, ...], Doc("The names of the recordings.")]
@@ -108,7 +108,7 @@ class SharesData:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ClassesData(shared.Heading):
+class ClassesData(headings.AnswerHeading):
     """Classes of scenarios that exclude each other, and what is proved of them."""
 
     schema: Literal["roadproof/classify/2"] = SCHEMA
@@ -125,15 +125,18 @@ class ClassesData(shared.Heading):
     claims: tuple[ClassClaimData, ...]
     shares: Annotated[SharesData | None, Doc("What was counted; null with --no-shares.")] = None
     doubts: Annotated[
-        tuple[Doubt, ...], Rule(least=1), LEFT_OUT, Doc("About the division; left out where there is none.")
+        tuple[UndecidedPart, ...],
+        Rule(least=1),
+        LEFT_OUT,
+        Doc("About the division; left out where there is none."),
     ] = ()
     seconds: shared.Seconds = 0.0
 
 
-def counted(
+def add_counts(
     data: ClassesData, shares: SharesData, situations: Mapping[str, int], traces: Mapping[str, int]
 ) -> ClassesData:
-    """Return the data with what was counted in recordings: situations and traces by class."""
+    """Return the data with counts in recordings: situations and traces by class."""
     classes = (
         replace(x, situations=situations.get(x.name, 0), traces=traces.get(x.name, 0)) for x in data.classes
     )

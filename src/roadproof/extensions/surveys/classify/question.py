@@ -1,7 +1,7 @@
-"""The classes of scenarios with evidence: a drive for each, a certificate for each claim about them.
+"""The question for evidence about classes: a drive for each, and a certificate for each claim about them.
 
-The definitions of the classes are a specification file. Which there are is found by proofs that nobody has to
-trust: that classes exclude each other and that scenarios are their unions are claims.
+The definitions of the classes are a specification file. The proofs that led to the classes need no trust: the
+claims say that classes exclude each other and that scenarios are their unions.
 """
 
 from collections.abc import Sequence
@@ -10,9 +10,11 @@ from functools import cached_property
 from typing import ClassVar
 
 from roadproof.errors import InputError
-from roadproof.evidence.answer import Answer
-from roadproof.evidence.claim import Claim, Exists, claim_of, valid_under
+from roadproof.evidence.answer import ClaimAnswer
+from roadproof.evidence.assuming import valid_under
+from roadproof.evidence.claim import Claim, Exists, claim_of
 from roadproof.evidence.codec import read
+from roadproof.evidence.verdict_with_evidence import ProofResult
 from roadproof.extensions.surveys.classify.cells import Cell
 from roadproof.extensions.surveys.classify.classes import SET_NAME, Class, Classes, plan_within
 from roadproof.extensions.surveys.classify.data import (
@@ -20,20 +22,20 @@ from roadproof.extensions.surveys.classify.data import (
     ClassClaimData,
     ClassData,
     ClassesData,
-    Divided,
-    Doubt,
+    DivisionData,
+    UndecidedPart,
 )
 from roadproof.extensions.surveys.classify.division import Division
-from roadproof.extensions.surveys.classify.drives import MOST_FAILURES, Example, roads_of
+from roadproof.extensions.surveys.classify.drives import MOST_FAILURES, ClassExample, roads_of
 from roadproof.extensions.surveys.classify.text import ClassClaim, claims_of, with_classes, write_classes
 from roadproof.library.compose import both
 from roadproof.library.elaborate import apply_definition, read_claim
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Specification
 from roadproof.logic.formula import Application
-from roadproof.questions.basis import Basis, ProofResult
-from roadproof.questions.question import Answers, Place, Steps, heading_of
-from roadproof.reasons import NO_REASON, Reason, Why, joined
+from roadproof.questions.basis import Basis
+from roadproof.questions.question import Answers, EvidencePlace, Steps, heading_of
+from roadproof.reasons import NO_REASON, Reason, ReasonKind, joined
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
@@ -49,11 +51,11 @@ class ClassesView:
     ``shown``: the answer to each class, with its name; ``decided``: that to each claim.
     """
 
-    examples: tuple[Example, ...]
+    examples: tuple[ClassExample, ...]
     decisions: tuple[ProofResult[ClassClaim], ...]
-    shown: tuple[tuple[str, Answer | None], ...] = ()
-    decided: tuple[Answer | None, ...] = ()
-    doubts: tuple[Doubt, ...] = ()
+    shown: tuple[tuple[str, ClaimAnswer | None], ...] = ()
+    decided: tuple[ClaimAnswer | None, ...] = ()
+    doubts: tuple[UndecidedPart, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ class ClassifyQuestion:
     kind: ClassVar[str] = "classify"
     replaces: ClassVar[bool] = True
     basis: Basis
-    asked: Divided
+    settings: DivisionData
 
     @property
     def work(self) -> Work:
@@ -75,25 +77,27 @@ class ClassifyQuestion:
         return Work(effort, CLAIM * effort.units, disprove=False, zones=True)
 
     @classmethod
-    def of(cls, basis: Basis, asked: object, where: str) -> "ClassifyQuestion":
+    def of(cls, basis: Basis, settings: object, where: str) -> "ClassifyQuestion":
         """Return the question that plain data ask. Raises ``InputError``."""
-        made = cls(basis, read(Divided, asked, where))
-        if made.asked.groups:
+        made = cls(basis, read(DivisionData, settings, where))
+        if made.settings.groups:
             made.require_division(where)
         return made
 
     def require_division(self, where: str) -> None:
-        """Raise ``InputError`` where what is asked is no division of these scenarios that is defined."""
+        """Raise ``InputError`` unless the settings describe a division of these scenarios that is defined."""
         if self.basis.specification.set_name != SET_NAME:
             raise InputError(f"{where}: classes are defined in the set '{SET_NAME}'")
-        plan = plan_within(self.home, self.asked.scenarios)
+        plan = plan_within(self.home, self.settings.scenarios)
         rows = [(group.vehicles, group.disturbances) for group in plan.groups]
-        told = [(x.vehicles, tuple(sorted({n for cell in x.cells for n in cell}))) for x in self.asked.groups]
-        fits = len(rows) == len(told) and all(
+        groups = [
+            (x.vehicles, tuple(sorted({n for cell in x.cells for n in cell}))) for x in self.settings.groups
+        ]
+        fits = len(rows) == len(groups) and all(
             vehicles == here and {*numbers} <= {*possible}
-            for (vehicles, possible), (here, numbers) in zip(rows, told, strict=True)
+            for (vehicles, possible), (here, numbers) in zip(rows, groups, strict=True)
         )
-        if not fits or not {n for cell in self.asked.places for n in cell} <= {*plan.sectors}:
+        if not fits or not {n for cell in self.settings.places for n in cell} <= {*plan.sectors}:
             raise InputError(f"{where}: its groups are not those of scenarios {plan.numbers}")
         for one in self.classes.all():
             if one.name not in self.basis.specification.definitions:
@@ -112,9 +116,9 @@ class ClassifyQuestion:
         return isinstance(defined, Application) and defined.body == both(what, where).formula
 
     @property
-    def doubted(self) -> list[tuple[str, Reason]]:
-        """What is in doubt about the division."""
-        return [(x.about, x.reason) for x in self.asked.doubts]
+    def undecided_parts(self) -> list[tuple[str, Reason]]:
+        """The undecided parts of the division, with reasons."""
+        return [(x.about, x.reason) for x in self.settings.doubts]
 
     @property
     def home(self) -> Specification:
@@ -125,35 +129,35 @@ class ClassifyQuestion:
 
     @cached_property
     def classes(self) -> Classes:
-        """The classes, without what their definitions say."""
-        what = tuple(tuple(map(_cell, x.cells)) for x in self.asked.groups)
-        plan = plan_within(self.home, self.asked.scenarios)
+        """The classes, without the formulas of their definitions."""
+        what = tuple(tuple(map(_cell, x.cells)) for x in self.settings.groups)
+        plan = plan_within(self.home, self.settings.scenarios)
         if not what:
             return Classes(plan, ((),) * len(plan.groups), ())
-        return Classes(plan, what, tuple(map(_cell, self.asked.places)))
+        return Classes(plan, what, tuple(map(_cell, self.settings.places)))
 
     @cached_property
     def text(self) -> str:
         """The definitions of the classes; empty where the division was cut off."""
-        return self.basis.library.files[-1].text if self.asked.groups else ""
+        return self.basis.library.files[-1].text if self.settings.groups else ""
 
     @cached_property
     def claims(self) -> dict[str, ClassClaim]:
-        """What is claimed of the classes, by name."""
-        if not self.asked.groups:
+        """The claims about the classes, by name."""
+        if not self.settings.groups:
             return {}
-        empty = {x.vehicles: [read_claim(self.home, text) for text in x.empty] for x in self.asked.groups}
+        empty = {x.vehicles: [read_claim(self.home, text) for text in x.empty] for x in self.settings.groups}
         every = claims_of(self.classes, empty, self.basis.specification)
         return {x.name: x for x in every}
 
-    def batches(self, known: Answers) -> list["ClassBatch | ClaimBatch"]:
-        """A batch for classes in which the same happens, and for a few claims each."""
-        made: list[ClassBatch | ClaimBatch] = [
-            ClassBatch(self, x) for x in self.classes.alike() if self.asked.groups
+    def batches(self, known: Answers) -> list["ClassBatch | ClassClaimBatch"]:
+        """Return a batch for classes with the same disturbances, and batches of a few claims."""
+        made: list[ClassBatch | ClassClaimBatch] = [
+            ClassBatch(self, x) for x in self.classes.alike() if self.settings.groups
         ]
         names = [*self.claims]
         for first in range(0, len(names), CLAIMS_IN_A_BATCH):
-            made.append(ClaimBatch(self, tuple(names[first : first + CLAIMS_IN_A_BATCH])))
+            made.append(ClassClaimBatch(self, tuple(names[first : first + CLAIMS_IN_A_BATCH])))
         return made
 
     def drives_of(self, one: Class) -> dict[str, Claim]:
@@ -188,30 +192,30 @@ class ClassifyQuestion:
             decisions,
             tuple((name, answer) for name, answer, _ in shown),
             tuple(known.get(name) for name in self.claims),
-            self.asked.doubts,
+            self.settings.doubts,
         )
 
-    def _shown(self, one: Class, known: Answers) -> tuple[str, Answer | None, Example]:
+    def _shown(self, one: Class, known: Answers) -> tuple[str, ClaimAnswer | None, ClassExample]:
         claims = self.drives_of(one)
         answers = {name: known.get(name) for name in claims}
         for name, answer in answers.items():
             if answer is not None and answer.drive is not None:
-                return name, answer, Example(one, verdict=Verdict.WITNESSED, drive=answer.drive)
+                return name, answer, ClassExample(one, verdict=Verdict.WITNESSED, drive=answer.drive)
         units = self.basis.effort.units
         reasons = [
-            x.reason if x.reason.is_late else Why.ON_ROAD(x.reason, _road(claims[name]), units)
+            x.reason if x.reason.is_late else ReasonKind.ON_ROAD(x.reason, _road(claims[name]), units)
             for name, x in answers.items()
             if x is not None
         ]
-        told = joined(reasons) if reasons else Why.NO_DRIVE_ELSEWHERE()
-        return one.name, answers[one.name], Example(one, verdict=Verdict.UNKNOWN, reason=told)
+        reason = joined(reasons) if reasons else ReasonKind.NO_DRIVE_ELSEWHERE()
+        return one.name, answers[one.name], ClassExample(one, verdict=Verdict.UNKNOWN, reason=reason)
 
-    def data(self, view: ClassesView, place: Place, seconds: float) -> ClassesData:
+    def data(self, view: ClassesView, place: EvidencePlace, seconds: float) -> ClassesData:
         """Return the view as ``--json`` prints it."""
-        said = {"set": self.classes.plan.set_name, **self.basis.said()}
         return ClassesData(
             **heading_of(SCHEMA, self.basis),
-            **said,  # type: ignore[arg-type]
+            set=self.classes.plan.set_name,
+            **self.basis.common_data(),
             scenarios=self.classes.plan.numbers,
             text=self.text,
             classes=tuple(
@@ -227,7 +231,7 @@ class ClassifyQuestion:
 
 @dataclass(frozen=True)
 class ClassBatch:
-    """Classes in which the same happens: a drive of one may do for another."""
+    """Classes with the same disturbances: a drive of one may serve for another."""
 
     question: ClassifyQuestion
     alike: tuple[Class, ...]
@@ -238,22 +242,22 @@ class ClassBatch:
         return self.alike[0].name
 
     def steps(self) -> Steps:
-        """Yield each claim, and be sent its answer; after some failures, and no drive, none is asked more."""
-        found, failures = False, 0
+        """Yield each claim, and be sent its answer. After some failures without any drive, stop."""
+        any_drive, failures = False, 0
         for one in self.alike:
-            if failures >= MOST_FAILURES and not found:
+            if failures >= MOST_FAILURES and not any_drive:
                 return
-            shown = False
+            has_drive = False
             for name, claim in self.question.drives_of(one).items():
                 answer = yield name, claim
-                shown = answer.drive is not None
-                if shown or answer.reason.is_late:
+                has_drive = answer.drive is not None
+                if has_drive or answer.reason.is_late:
                     break
-            found, failures = found or shown, failures + (not shown)
+            any_drive, failures = any_drive or has_drive, failures + (not has_drive)
 
 
 @dataclass(frozen=True)
-class ClaimBatch:
+class ClassClaimBatch:
     """Claims about the classes."""
 
     question: ClassifyQuestion
@@ -287,18 +291,22 @@ def _road(claim: Claim) -> str:
     return "" if claim.mode.road is None else claim.mode.road.name
 
 
-def _decision(claim: ClassClaim, answer: Answer | None) -> ProofResult[ClassClaim]:
+def _decision(claim: ClassClaim, answer: ClaimAnswer | None) -> ProofResult[ClassClaim]:
     if answer is None:
         return ProofResult(claim, verdict=Verdict.UNKNOWN, reason=NO_REASON)
     match answer.verdict:
         case Verdict.PROVED | Verdict.VACUOUS | Verdict.REFUTED | Verdict.UNKNOWN as verdict:
             certificate = answer.certificate
             return ProofResult(claim, verdict=verdict, reason=answer.reason, certificate=certificate)
-        case _:
+        case Verdict.PROVED_BOUNDED | Verdict.WITNESSED | Verdict.IMPOSSIBLE | Verdict.NONE_WITHIN:
+            return ProofResult(claim, verdict=Verdict.CROSSCHECK_FAILED, reason=answer.reason)
+        case Verdict.DERIVED | Verdict.COVERED | Verdict.GAPS | Verdict.CROSSCHECK_FAILED:
             return ProofResult(claim, verdict=Verdict.CROSSCHECK_FAILED, reason=answer.reason)
 
 
-def _claim_data(x: ProofResult[ClassClaim], answer: Answer | None, place: Place) -> ClassClaimData:
+def _claim_data(
+    x: ProofResult[ClassClaim], answer: ClaimAnswer | None, place: EvidencePlace
+) -> ClassClaimData:
     shown = answer is not None and answer.certificate is not None
     return ClassClaimData(
         name=x.claim.name,
@@ -310,7 +318,7 @@ def _claim_data(x: ProofResult[ClassClaim], answer: Answer | None, place: Place)
     )
 
 
-def _class_data(x: Example, name: str, answer: Answer | None, place: Place) -> ClassData:
+def _class_data(x: ClassExample, name: str, answer: ClaimAnswer | None, place: EvidencePlace) -> ClassData:
     return ClassData(
         name=x.one.name,
         vehicles=x.one.vehicles,

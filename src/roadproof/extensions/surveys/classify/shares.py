@@ -1,4 +1,4 @@
-"""What was counted in recordings, as a table beside the answers; nothing rests on it."""
+"""Counts in recordings, as a table beside the answers; no verdict rests on it."""
 
 import csv
 import io
@@ -9,7 +9,7 @@ from typing import Final
 from roadproof.errors import InputError
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.strict import LARGEST_INDEX, JsonObject
-from roadproof.extensions.surveys.classify.data import ClassesData, SharesData, Situations, counted
+from roadproof.extensions.surveys.classify.data import ClassesData, SharesData, Situations, add_counts
 from roadproof.runtime.files import read_text
 
 SHARES: Final = "shares.csv"
@@ -18,7 +18,7 @@ _TOTALS = ("traces", "covered", "repeated")
 
 
 def shares_table(shares: SharesData, situations: Mapping[str, int], traces: Mapping[str, int]) -> str:
-    """Return a table of what was counted: totals, and situations and traces of each class."""
+    """Return the counts as a CSV table: totals, and situations and traces of each class."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(_COLUMNS)
@@ -40,7 +40,7 @@ def _rows(
 
 
 def with_shares(data: JsonObject, folder: Path) -> JsonObject:
-    """Return the view of a folder with what its table says was counted. Raises ``InputError``."""
+    """Return the view of a folder with the counts of its table. Raises ``InputError``."""
     path = folder / SHARES
     if not path.is_file() or path.is_symlink():
         return data
@@ -66,4 +66,4 @@ def with_shares(data: JsonObject, folder: Path) -> JsonObject:
     situations, traces = (
         {name: n for (what, name), n in numbers.items() if what == word} for word in ("situations", "traces")
     )
-    return write(counted(read(ClassesData, data, str(path)), shares, situations, traces))
+    return write(add_counts(read(ClassesData, data, str(path)), shares, situations, traces))

@@ -1,6 +1,6 @@
-"""The shares of classes in a simulated recording, which are kept under a digest of all that they depend on.
+"""The shares of classes in a simulated recording, stored under a digest of everything that they depend on.
 
-They are counted of drives by the simulator, and nothing rests on them.
+No verdict rests on them.
 """
 
 import json
@@ -12,7 +12,7 @@ from roadproof.evidence.codec import Doc, read, write
 from roadproof.extensions.surveys.classify.classes import Classes
 from roadproof.extensions.surveys.classify.traffic_shares import Shares, count_shares
 from roadproof.extensions.traffic.simulate.simulate import simulate
-from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import TrafficSettings
 from roadproof.questions.basis import Basis
 from roadproof.runtime.archives import is_off, recall, remember
 from roadproof.runtime.canonical import digest
@@ -27,7 +27,7 @@ Count: TypeAlias = tuple[str, int]
 
 @dataclass(frozen=True)
 class SharesRecord:
-    """``Shares`` as they are kept, counts in the order in which they were met."""
+    """The JSON of ``Shares``, with counts in the order in which classes occurred."""
 
     recordings: Annotated[tuple[str, ...], Doc("What was counted in.")]
     traces: Annotated[int, Doc("Traces in which danger arises.")]
@@ -39,20 +39,20 @@ class SharesRecord:
 
 
 def simulated_shares(basis: Basis, classes: Classes, fresh: bool = False) -> Shares:
-    """Return the shares of ``classes`` in a simulated recording; ``basis`` is about their set.
+    """Return the shares of ``classes`` in a simulated recording; ``basis`` reads their set.
 
-    ``fresh``: they are counted whether or not they are known. Those that are broken are not kept.
+    ``fresh``: count again even if the shares are known. Shares that contradict a proof are not stored.
     """
     reads_known = not fresh and not is_off()
     key = shares_key(basis, classes)
-    found = recall(KIND, key) if reads_known else None
-    if found is not None:
+    known = recall(KIND, key) if reads_known else None
+    if known is not None:
         try:
-            return shares_of(found.text)
+            return shares_of(known.text)
         except InputError:  # they are counted again
             pass
     home, values = basis.specification, basis.all_values()
-    recording = simulate(Traffic(seconds=SECONDS), SEED)
+    recording = simulate(TrafficSettings(seconds=SECONDS), SEED)
     shares = count_shares(classes, home, values, [recording], source=SOURCE)
     if reads_known and not shares.broken:
         remember(key, shares_text(shares))
@@ -62,9 +62,11 @@ def simulated_shares(basis: Basis, classes: Classes, fresh: bool = False) -> Sha
 def shares_key(basis: Basis, classes: Classes) -> str:
     """Return a digest of all that shares depend on: every definition, readings, values, and the classes."""
     home, plan = basis.specification, classes.plan
-    called = [(x.name, x.vehicles, x.scenarios) for x in classes.all()]
+    named = [(x.name, x.vehicles, x.scenarios) for x in classes.all()]
+    groups = [(x.vehicles, x.rows) for x in plan.groups]
+    divided = plan.set_name, groups, plan.sectors, plan.places, plan.happenings
     read_with = home.library.fingerprint, home.set_name, home.options, basis.all_values()
-    return digest(SOURCE, read_with, plan, called, ANSWERS)
+    return digest(SOURCE, read_with, divided, named, ANSWERS)
 
 
 def shares_text(shares: Shares) -> str:
@@ -82,7 +84,7 @@ def shares_text(shares: Shares) -> str:
 
 
 def shares_of(text: str) -> Shares:
-    """Return the shares that a text says. Raises ``InputError``."""
+    """Return the shares of a JSON text. Raises ``InputError``."""
     record = read(SharesRecord, json.loads(text), "known shares")
     return Shares(
         [*record.recordings],

@@ -12,7 +12,7 @@ from roadproof.extensions.surveys.classify.classes import (
     FILE_NAME,
     SET_NAME,
     Classes,
-    Group,
+    ScenarioGroup,
     what_axis,
     where_axis,
 )
@@ -42,7 +42,7 @@ class ClassClaim:
 
 
 def write_classes(classes: Classes, specification: Specification) -> str:
-    """The text of a specification file; its definitions are new, and are to be read with set ``classes``.
+    """Return the text of a specification file that defines the classes in the set ``classes``.
 
     Raises ``InputError`` where the library has one of the names already.
     """
@@ -63,7 +63,7 @@ def write_classes(classes: Classes, specification: Specification) -> str:
 
 
 def with_classes(text: str, specification: Specification) -> Specification:
-    """The set of the classes, under the options of ``specification``; their text is one of the files."""
+    """Return the set of the classes, whose text becomes a file of the library, with the same options."""
     source = Source(FILE_NAME, text)
     library = build_library([source], specification.library)
     library = replace(library, files=(*specification.library.files, source))
@@ -79,7 +79,7 @@ def _head(classes: Classes, specification: Specification) -> Iterator[str]:
         if value != specification.library.options[name].values[0]
     )
     plan = classes.plan
-    told = [
+    paragraphs = [
         f"{len(classes.all())} classes of scenarios {spans(plan.numbers, least=2)} of set {plan.set_name}.",
         f"Read with {files} --set {SET_NAME}{options}; in other sets the names mean other things.",
         "A class says of one trace, its vehicles and a lane L which of these scenarios hold, and that no "
@@ -87,16 +87,16 @@ def _head(classes: Classes, specification: Specification) -> Iterator[str]:
         "scenario is the union of its classes.",
     ]
     if plan.has_places:
-        told.append(
+        paragraphs.append(
             "A class is something that happens, and where. Any two of the definitions what_ of the same "
             "vehicles exclude each other, and so do any two of where_."
         )
     for group in plan.groups[1:]:
-        told.append(
+        paragraphs.append(
             f"Classes of {', '.join(group.vehicles)} are apart: they exclude each other, and say nothing of "
             "the pairs among these vehicles, each of which is in a class of pairs or in none."
         )
-    for paragraph in told:
+    for paragraph in paragraphs:
         yield from wrap(paragraph, WIDTH, initial_indent="# ", subsequent_indent="#   ")
 
 
@@ -130,7 +130,7 @@ def _definition(name: str, parameters: str, doc: str, body: str) -> tuple[str, s
     return name, line if len(line) <= WIDTH else f"{head}\n  := {body}"
 
 
-def _head_of(group: Group) -> str:
+def _head_of(group: ScenarioGroup) -> str:
     return f"{', '.join(group.vehicles)}: vehicle, L: lane"
 
 
@@ -145,13 +145,13 @@ def _listed(items: Sequence[object]) -> str:
 def claims_of(
     classes: Classes, empty: Mapping[tuple[str, ...], Sequence[Query]], specification: Specification
 ) -> tuple[ClassClaim, ...]:
-    """All that is claimed of the classes, in whose set ``specification`` the claims are read.
+    """Return the claims about the classes; ``specification`` is the set of the classes.
 
-    ``empty``: what cells that were left out say, by vehicles of the group. Exclusive: any two classes; where
-    there are several road sectors, any two cells of what happens, and any two of where. Covers: a scenario
-    holds exactly where one of its classes does; where there are several road sectors, where one of its cells
-    of what happens and one of its cells of where do. A class is by definition one of each, so this says the
-    same of the classes.
+    ``empty``: formulas of cells that were left out, by vehicles of the group. Exclusive: any two classes
+    exclude each other; with several road sectors, any two cells of disturbances, and any two of sectors.
+    Covers: a scenario holds exactly where one of its classes does. With several road sectors, it holds where
+    one of its cells of disturbances and one of its cells of sectors do. A class is by definition one of
+    each, so this is equivalent.
     """
     claims: list[tuple[str, Kind, str]] = []
     for group, cells in zip(classes.plan.groups, classes.what, strict=True):
@@ -161,7 +161,9 @@ def claims_of(
     return tuple(ClassClaim(name, kind, read_claim(specification, text)) for name, kind, text in claims)
 
 
-def _claims_of(classes: Classes, group: Group, cells: Sequence[Cell]) -> Iterator[tuple[str, Kind, str]]:
+def _claims_of(
+    classes: Classes, group: ScenarioGroup, cells: Sequence[Cell]
+) -> Iterator[tuple[str, Kind, str]]:
     plan = classes.plan
     yield from _exclusive([plan.what(cell.holds) for cell in cells], group.arguments, "")
     if not plan.has_places:
@@ -196,7 +198,7 @@ def _exclusive(names: Sequence[str], arguments: str, mark: str) -> Iterator[tupl
 
 
 def claims_text(claims: Sequence[ClassClaim]) -> str:
-    """The claims as a file for ``prove --claims``: paragraphs under a comment for each kind."""
+    """Return the claims as a file for ``prove --claims``: paragraphs under a comment for each kind."""
     lines = [f"# To be proved with --spec {FILE_NAME} --set {SET_NAME}.", ""]
     for kind, heading in HEADINGS.items():
         those = [claim.query.text for claim in claims if claim.kind == kind]

@@ -1,8 +1,8 @@
-"""How often each class occurs in recordings, and whether the classes are a partition there too.
+"""Counts of each class in recordings, and a check that the classes are a partition there, too.
 
-A situation is a disturbance trace (semantics §7), vehicles of it in their roles, and a lane: that of either
-vehicle of the pair at the start of the trace, for three vehicles that of SV. Traces are read to their end
-and no further (``clip``): what does not happen on them does not happen.
+A situation is a disturbance trace (semantics §7), its vehicles in their roles, and a lane. The lane is that
+of either vehicle of a pair at the start of the trace, for three vehicles that of SV. Traces are read to their
+end and no further (``clip``).
 """
 
 from collections import Counter, defaultdict
@@ -18,19 +18,20 @@ from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_re
 from roadproof.extensions.traffic.evaluate.questions import (
     ROLES,
     START,
+    EvaluationQuestions,
+    EvaluationSettings,
     MonitorKey,
-    Questions,
-    Settings,
-    ask,
+    compile_questions,
     of_three,
 )
-from roadproof.extensions.traffic.evaluate.totals import Counts, without_repeats
+from roadproof.extensions.traffic.evaluate.totals import ShownMoments, without_repeats
 from roadproof.extensions.traffic.evaluate.traces import OTHER_LANE
 from roadproof.extensions.traffic.formats.clock import Rate
 from roadproof.extensions.traffic.formats.recording import Recording
-from roadproof.extensions.traffic.formats.reliable import losses_of
+from roadproof.extensions.traffic.formats.reliable import left_out_notes
+from roadproof.extensions.traffic.scenario_parts import disturbance
 from roadproof.library.elaborate import apply_definition, walk_of
-from roadproof.library.scenarios import LANE, MIN_DANGER, PAIR, TRIPLE, disturbance, name_of, number_in
+from roadproof.library.scenarios import LANE, MIN_DANGER, PAIR, TRIPLE, name_of, number_in
 from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -64,8 +65,8 @@ class Shares:
     left_out: list[str] = field(default_factory=list)
 
     @property
-    def told(self) -> SharesData:
-        """What answers say of them."""
+    def data(self) -> SharesData:
+        """The shares as data of an answer."""
         return SharesData(
             source=self.source,
             recordings=tuple(self.recordings),
@@ -86,11 +87,11 @@ def count_shares(
 ) -> Shares:
     """Count the classes in ``recordings``; ``specification`` is the set of the classes.
 
-    ``values``: parameters in SI units. Cars are looked at; what an earlier recording has shown is left out.
+    ``values``: parameters in SI units. Only cars count, and traces of an earlier recording are left out.
     Raises ``InputError``.
     """
-    shares, counted = Shares(source=source), Counts()
-    settings = Settings(
+    shares, counted = Shares(source=source), ShownMoments()
+    settings = EvaluationSettings(
         specification.library,
         specification.options,
         values,
@@ -100,19 +101,21 @@ def count_shares(
         classes=("Car",),
         convention="clip",
     )
-    known: dict[Rate, Questions] = {}
+    known: dict[Rate, EvaluationQuestions] = {}
     for recording in recordings:
         if recording.rate not in known:
             known[recording.rate] = questions_of(classes, specification, settings, recording.rate)
-        found = without_repeats(evaluate_recording(recording, known[recording.rate]), counted)
-        add_shares(shares, classes, found)
-        shares.left_out += losses_of(recording)
+        findings = without_repeats(evaluate_recording(recording, known[recording.rate]), counted)
+        add_shares(shares, classes, findings)
+        shares.left_out += left_out_notes(recording)
     shares.repeated = sum(repeat.what == "trace" for repeat in counted.repeats)
     return shares
 
 
-def questions_of(classes: Classes, specification: Specification, settings: Settings, rate: Rate) -> Questions:
-    """Every scenario and class, asked in both roles and for the lanes of both vehicles."""
+def questions_of(
+    classes: Classes, specification: Specification, settings: EvaluationSettings, rate: Rate
+) -> EvaluationQuestions:
+    """Return monitors of every scenario and class, in both roles and for the lanes of both vehicles."""
     pairs: dict[MonitorKey, Formula] = {}
     triples: dict[MonitorKey, Formula] = {}
     starts: list[Formula] = []
@@ -132,16 +135,16 @@ def questions_of(classes: Classes, specification: Specification, settings: Setti
                 starts.append(disturbance(specification, number, group.vehicles).formula)
             for name in names:
                 triples[of_three(name, 0)] = applied(name, group.vehicles)
-    begun = {START: f.disjunction(*map(at_start, starts))}
+    start = {START: f.disjunction(*map(at_start, starts))}
     return replace(
-        ask(settings, rate),
+        compile_questions(settings, rate),
         pairs=(_compiled(pairs, settings),) if pairs else (),
-        triple_start=_compiled(begun, settings) if triples else None,
+        triple_start=_compiled(start, settings) if triples else None,
         triples=(_compiled(triples, settings),) if triples else (),
     )
 
 
-def _compiled(formulas: Mapping[K, Formula], settings: Settings) -> Monitor[K]:
+def _compiled(formulas: Mapping[K, Formula], settings: EvaluationSettings) -> Monitor[K]:
     valued = all_with_values(formulas.values(), settings.values)
     return compile(dict(zip(formulas, valued, strict=True)))
 
@@ -149,32 +152,33 @@ def _compiled(formulas: Mapping[K, Formula], settings: Settings) -> Monitor[K]:
 def add_shares(shares: Shares, classes: Classes, findings: Findings) -> None:
     """Count one recording, and compare its classes with its scenarios."""
     scenarios: dict[Situation, set[int]] = defaultdict(set)
-    found: dict[Situation, set[str]] = defaultdict(set)
+    names_of: dict[Situation, set[str]] = defaultdict(set)
     where: dict[Situation, tuple[int, int]] = {}
     for match in findings.matches:
         situation = (findings.recording, match.sv, match.pov, match.pov2, match.lane)
         where[situation] = match.pair
         number = number_in(match.set_name)
         if number is None:
-            found[situation].add(match.set_name)
+            names_of[situation].add(match.set_name)
         else:
             scenarios[situation].add(number)
     by_name = {one.name: one for one in classes.all()}
     shares.recordings.append(findings.recording)
     shares.all_traces += len(findings.traces)
     shares.covered += len(set(where.values()))
-    shares.traces.update(name for name, _ in {(n, where[s]) for s, names in found.items() for n in names})
+    shown = dict.fromkeys((name, where[s]) for s, names in names_of.items() for name in sorted(names))
+    shares.traces.update(name for name, _ in shown)
     for situation in sorted(where, key=str):
-        names = found.get(situation, set())
+        names = names_of.get(situation, set())
         shares.situations.update(names)
         shares.classified[3 if situation[3] is not None else 2] += 1
-        told = _difference(names, scenarios.get(situation, set()), by_name)
-        if told:
-            shares.broken.append(f"{_say(situation)}: {told}")
+        difference = _difference(names, scenarios.get(situation, set()), by_name)
+        if difference:
+            shares.broken.append(f"{_say(situation)}: {difference}")
 
 
 def _difference(names: set[str], scenarios: set[int], classes: Mapping[str, Class]) -> str:
-    """How classes and scenarios of one situation differ from what is proved; empty where they do not."""
+    """Return how the classes and scenarios of a situation contradict the proofs; empty if they do not."""
     if len(names) != 1:
         return f"scenarios {sorted(scenarios)} and {len(names)} classes {', '.join(sorted(names))}"
     (name,) = names

@@ -1,10 +1,10 @@
-"""``roadproof classify``: classes of scenarios that exclude each other and together cover the same."""
+"""``roadproof classify``: mutually exclusive classes that together cover the scenarios."""
 
 import argparse
 
 from roadproof.errors import UsageError
 from roadproof.extensions.surveys.settings import Classify
-from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.basis import deliver, read_definitions, study_keywords
 
 SUMMARY = "partition scenarios into exclusive classes, and count them"
 
@@ -32,5 +32,5 @@ def run(args: argparse.Namespace) -> int:
     if args.on is not None and not args.shares:
         raise UsageError("--on and --no-shares contradict each other: omit one of them")
     home = read_definitions(args, OPTIONS)
-    found = classify(args.among, home, **study_keywords(args, OPTIONS, beside_json=True))
-    return hand_over(args, found, args.pictures)
+    result = classify(args.among, home, **study_keywords(args, OPTIONS, beside_json=True))
+    return deliver(args, result, args.pictures)

@@ -1,9 +1,9 @@
-"""``roadproof coverage``: which disturbances a spec set misses, or a proof that it misses none."""
+"""``roadproof coverage``: the disturbances that a spec set misses, or a proof that it misses none."""
 
 import argparse
 
 from roadproof.extensions.surveys.settings import Coverage
-from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.basis import deliver, read_definitions, study_keywords
 from roadproof.frontends.cli.progress import Counter, tell
 
 SUMMARY = "find disturbances that a spec set misses, or prove it has no gap"
@@ -32,7 +32,7 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.extensions.surveys.covering import coverage
 
     home = read_definitions(args, OPTIONS)
-    found = coverage(home, tell=tell, **study_keywords(args, OPTIONS))
+    result = coverage(home, tell=tell, **study_keywords(args, OPTIONS))
     if args.out is not None and args.pictures:
-        found.draw_beside(args.jobs, Counter())
-    return hand_over(args, found, args.pictures)
+        result.draw_beside(args.jobs, Counter())
+    return deliver(args, result, args.pictures)

@@ -1,10 +1,10 @@
-"""``roadproof explore``: for which values a scenario has a drive, and how far a measure can go."""
+"""``roadproof explore``: the values for which a scenario has a drive, and extremes of a measure."""
 
 import argparse
 
 from roadproof.errors import UsageError
 from roadproof.extensions.surveys.settings import Explore
-from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.basis import deliver, read_definitions, study_keywords
 from roadproof.frontends.cli.options import add_what_arguments, some_or_all
 
 SUMMARY = "find the parameter values for which a scenario has a drive"
@@ -51,11 +51,11 @@ def run(args: argparse.Namespace) -> int:
         if name in home.values:
             raise UsageError(f"{name} is given by --param and varied by --vary: leave one out")
     question = explore_question(home, what, given, ranges)
-    return hand_over(args, Explorations.settled(question, given), args.pictures)
+    return deliver(args, Explorations.decide(question, given), args.pictures)
 
 
 def _varied(text: str) -> tuple[str, str, str]:
-    """``NAME=LOW:HIGH`` in its parts. Raises ``UsageError``."""
+    """Return the parts of ``NAME=LOW:HIGH``. Raises ``UsageError``."""
     name, equals, ends = (part.strip() for part in text.partition("="))
     low, colon, high = (part.strip() for part in ends.partition(":"))
     if not (name and equals and low and colon and high):

@@ -1,9 +1,9 @@
-"""``roadproof redundancy``: which parts of scenarios could be left out, and what shows the others needed."""
+"""``roadproof redundancy``: the parts of scenarios that could be left out, and evidence for the others."""
 
 import argparse
 
 from roadproof.extensions.surveys.settings import Redundancy
-from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.basis import deliver, read_definitions, study_keywords
 
 SUMMARY = "find the parts of scenarios that can be left out"
 
@@ -26,4 +26,4 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.extensions.surveys.redundancies import redundancy
 
     home = read_definitions(args, OPTIONS)
-    return hand_over(args, redundancy(args.among, home, **study_keywords(args, OPTIONS)))
+    return deliver(args, redundancy(args.among, home, **study_keywords(args, OPTIONS)))

@@ -1,1 +1,1 @@
-"""Which disturbances a spec set misses: proofs that it misses none, or its gaps in classes."""
+"""The gaps of a spec set in classes, or proofs that it has none."""

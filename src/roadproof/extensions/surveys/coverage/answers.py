@@ -1,35 +1,34 @@
-"""What came out for a class of gaps, how often it occurs in recordings, and the same as plain data."""
+"""Answers about the gaps of a spec set, and counts of gaps in recordings."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypedDict
 
-from roadproof.evidence.answer import Answer
+from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.settled import Settled
-from roadproof.extensions.surveys.coverage.classes import Part
-from roadproof.extensions.surveys.coverage.kept import (
+from roadproof.evidence.verdict_with_evidence import ProofResult, VerdictWithEvidence
+from roadproof.extensions.surveys.coverage.classes import ScenarioPart
+from roadproof.extensions.surveys.coverage.schema import (
     CountedVerdict,
-    MissedTrace,
+    GapTraceData,
     NeedVerdict,
     SetVerdict,
     Traffic,
 )
 from roadproof.library.scenarios import LANE, PAIR
 from roadproof.library.specification import Query
-from roadproof.questions.basis import ProofResult
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.verdict import Verdict
 
 
 @dataclass(frozen=True)
-class Shown:
+class NamedAnswer:
     """The answer to a claim, with its name."""
 
     name: str
-    answer: Answer
+    answer: ClaimAnswer
 
     @property
     def drive(self) -> JudgedDrive:
@@ -40,19 +39,18 @@ class Shown:
 
 @dataclass(frozen=True)
 class Gap:
-    """A judged drive that the set misses, near to the scenario of a class in roles and lane of its formula.
+    """A judged drive that the set misses: a near miss of a scenario, with its roles and lane.
 
-    ``first``: the first of the wider sets that catches it, or empty, and ``caught_by`` the smallest choices
-    of definitions of that set that do; ``classes``: the keys of all parts for which it is a near miss.
-    ``elsewhere``: by road the same motions as gaps there, as near to the scenario's counterpart; they are
-    given for whole components.
+    ``first``: the first wider set that catches it, or empty; ``caught_by``: the smallest choices of its
+    definitions that do. ``classes``: the keys of all parts for which the drive is a near miss. ``elsewhere``:
+    for whole components, the same motions as gaps on other roads, by road.
     """
 
-    shown: Shown
+    shown: NamedAnswer
     first: str
     caught_by: tuple[tuple[str, ...], ...]
     classes: tuple[str, ...]
-    elsewhere: Mapping[str, Shown] = field(default_factory=dict)
+    elsewhere: Mapping[str, NamedAnswer] = field(default_factory=dict)
 
     @property
     def drive(self) -> JudgedDrive:
@@ -61,38 +59,38 @@ class Gap:
 
 
 @dataclass(frozen=True)
-class ClassAnswer(Settled[CountedVerdict]):
-    """What came out for one class; ``part`` None is the class for which no single condition is to blame.
+class ClassAnswer(VerdictWithEvidence[CountedVerdict]):
+    """The answer about one class; ``part`` None is the class without a single condition to blame.
 
-    WITNESSED with gaps that differ in the wider set that catches them first, ``none_for`` being the sets
-    for which none was found; IMPOSSIBLE with a certificate of ``claim``, the answer of that ``name``; UNKNOWN
-    with a reason. Where recordings were looked at, ``in_traffic`` says how often it occurs there, and
-    ``trace`` where first; CROSSCHECK-FAILED where it does although it is proved empty.
+    WITNESSED: with gaps, one for each wider set that catches it first; ``none_for``: sets without such a gap.
+    IMPOSSIBLE: with a certificate of ``claim``. UNKNOWN: with a reason. ``in_traffic``: its count in
+    recordings, and ``trace`` the first occurrence. CROSSCHECK-FAILED: it occurs, but is proved empty.
     """
 
-    part: Part | None
+    part: ScenarioPart | None
     gaps: tuple[Gap, ...] = ()
     claim: Query | None = None
     none_for: tuple[str, ...] = ()
     in_traffic: int | None = None
     trace: str = ""
-    proof: Shown | None = None
+    proof: NamedAnswer | None = None
 
 
 Answers = tuple[ClassAnswer, ...]
 
 
 @dataclass(frozen=True)
-class Need(Settled[NeedVerdict]):
-    """WITNESSED: ``drive`` is missed without the definition, as it is in ``parent``, and caught with it.
+class Need(VerdictWithEvidence[NeedVerdict]):
+    """The answer whether a set needs a definition that it replaces in the set ``parent``.
 
-    PROVED: the set covers everything without it, too. UNKNOWN: neither was found. The formula of the drive
-    says what is missed with all definitions written out, as no shipped set is the one without the definition.
+    WITNESSED: ``drive`` is missed without the definition, and caught with it. PROVED: the set covers
+    everything without it, too. UNKNOWN: neither was found. The formula of the drive has all definitions
+    written out, because no shipped set lacks just this one.
     """
 
     definition: str
     parent: str
-    shown: Shown | None = None
+    shown: NamedAnswer | None = None
 
 
 class ClassNames(TypedDict):
@@ -104,8 +102,8 @@ class ClassNames(TypedDict):
     condition: str
 
 
-def names_of(part: Part | None) -> ClassNames:
-    """What a class is called: the scenario, component and condition to blame."""
+def names_of(part: ScenarioPart | None) -> ClassNames:
+    """Return the name of a class: the scenario, component and condition to blame."""
     return {
         "scenario": None if part is None else part.scenario,
         "component": "" if part is None else part.component,
@@ -115,14 +113,14 @@ def names_of(part: Part | None) -> ClassNames:
 
 
 def in_role(file: DriveFile, turned: bool, lane: str | None) -> DriveFile:
-    """The drive in which L is a lane; ``turned``: with SV and POV in each other's role."""
+    """Return the drive with ``lane`` for L; ``turned``: with the roles of SV and POV swapped."""
     roles = dict(zip(PAIR, PAIR[::-1] if turned else PAIR, strict=True))
     return replace(file, drive=file.drive.cast(roles), lanes={} if lane is None else {LANE: lane})
 
 
 @dataclass(frozen=True)
 class GapTrace:
-    """A disturbance between two vehicles of a recording; ``missed``: no scenario, any lane, either role.
+    """A disturbance between two vehicles of a recording; ``missed``: no scenario holds on it.
 
     ``classes``: the keys of the parts without which a scenario would hold; ``alone``: whether no single
     condition is to blame.
@@ -142,13 +140,13 @@ class GapTrace:
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """Its classes by their keys, that of gaps without a single condition to blame as ''."""
+        """The keys of its classes; '' is the class without a single condition to blame."""
         return (*self.classes, "") if self.alone else self.classes
 
 
 @dataclass(frozen=True)
 class GapTraffic:
-    """What recordings hold. ``repeats``: how many disturbances an earlier window has shown already.
+    """The disturbances of recordings; ``repeats``: the number that earlier windows showed already.
 
     ``left_out``: notes on vehicles that recordings were read without.
     """
@@ -160,16 +158,16 @@ class GapTraffic:
     left_out: tuple[str, ...] = ()
 
     @property
-    def told(self) -> Traffic:
-        """What an index says of it."""
-        missed = tuple(MissedTrace(recording=x.recording, pair=x.pair, classes=x.keys) for x in self.missed)
+    def data(self) -> Traffic:
+        """The traffic as plain data."""
+        traces = tuple(GapTraceData(recording=x.recording, pair=x.pair, classes=x.keys) for x in self.missed)
         return Traffic(
-            recordings=str(self.folder), disturbances=self.disturbances, repeats=self.repeats, missed=missed
+            recordings=str(self.folder), disturbances=self.disturbances, repeats=self.repeats, missed=traces
         )
 
 
 def with_counts(answer: ClassAnswer, traffic: GapTraffic) -> ClassAnswer:
-    """The answer with how often its class occurs. One that is proved empty and occurs is our fault."""
+    """Return the answer with the count of its class; CROSSCHECK-FAILED if it occurs, but is proved empty."""
     key = "" if answer.part is None else answer.part.key
     traces = [trace for trace in traffic.missed if key in trace.keys]
     if not traces:
@@ -180,15 +178,15 @@ def with_counts(answer: ClassAnswer, traffic: GapTraffic) -> ClassAnswer:
         return seen
     broken = answer.verdict is Verdict.IMPOSSIBLE
     verdict = Verdict.CROSSCHECK_FAILED if broken else answer.verdict
-    return replace(seen, verdict=verdict, reason=Why.OCCURS(where))
+    return replace(seen, verdict=verdict, reason=ReasonKind.OCCURS(where))
 
 
 # --- all answers together --------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
-class Survey:
-    """All answers together: claims that there is no gap, the classes of gaps, definitions that are needed."""
+class GapSurvey:
+    """The answers about a set: claims of coverage, classes of gaps, and definitions that are needed."""
 
     claims: tuple[ProofResult[Query], ...]
     classes: tuple[ClassAnswer, ...]
@@ -200,21 +198,21 @@ class Survey:
         return verdict_on(self.claims, self.classes, self.traffic)
 
 
-def with_traffic(survey: Survey, traffic: GapTraffic) -> Survey:
-    """Return what is known with how often each class occurs in recordings."""
+def with_traffic(survey: GapSurvey, traffic: GapTraffic) -> GapSurvey:
+    """Return the answers with counts of each class in recordings."""
     classes = tuple(with_counts(x, traffic) for x in survey.classes)
     return replace(survey, classes=classes, traffic=traffic)
 
 
 def is_covered(claims: Sequence[ProofResult[Query]]) -> bool:
-    """Whether the set is proved to have no gap."""
+    """Return whether the set is proved to have no gap."""
     return all(claim.verdict is Verdict.PROVED for claim in claims)
 
 
 def verdict_on(
     claims: Sequence[ProofResult[Query]], classes: Sequence[ClassAnswer], traffic: GapTraffic | None
 ) -> SetVerdict:
-    """The verdict on a set: CROSSCHECK-FAILED where traffic shows what is proved not to be."""
+    """Return the verdict on a set: CROSSCHECK-FAILED if traffic contradicts a proof."""
     proved = is_covered(claims)
     if any(x.verdict is Verdict.CROSSCHECK_FAILED for x in classes):
         return Verdict.CROSSCHECK_FAILED

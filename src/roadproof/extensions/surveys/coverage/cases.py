@@ -1,4 +1,4 @@
-"""The cases of coverage: claims that there is no gap, and classes of gaps."""
+"""Cases for build servers: claims of coverage, and classes of gaps."""
 
 from __future__ import annotations
 
@@ -7,38 +7,36 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.frontends.report.cases import (
-    Case,
-    definition_location,
-    state_of,
-)
+from roadproof.frontends.report.cases import Case, definition_location, state_of
 from roadproof.frontends.report.question_cases import written
 from roadproof.library.specification import Specification
 from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:
-    from roadproof.extensions.surveys.coverage.answers import Survey
+    from roadproof.extensions.surveys.coverage.answers import GapSurvey
 
 
-def coverage_cases(survey: Survey, specification: Specification, files: Mapping[str, Path]) -> Iterator[Case]:
-    """A case for each claim that there is no gap, and for each class of gaps, which fails with a drive.
+def coverage_cases(
+    survey: GapSurvey, specification: Specification, files: Mapping[str, Path]
+) -> Iterator[Case]:
+    """Yield a case for each claim of coverage, and for each class of gaps, which fails with a drive.
 
-    A claim that is refuted passes: the classes say why. ``files``: drives, by ``Part.key`` of their class.
+    A claim that is refuted passes: the classes say why. ``files``: drives, by the key of the part to blame.
     """
     for claim in survey.claims:
-        told = f"{claim.verdict}: {claim.claim.text}{claim.reason and f' ({claim.reason})'}"
+        message = f"{claim.verdict}: {claim.claim.text}{claim.reason and f' ({claim.reason})'}"
         case = Case(
             suite="claims",
             name=claim.claim.text,
             state=state_of(claim.verdict, (Verdict.PROVED, Verdict.REFUTED)),
             rule=claim.verdict,
-            message=told,
+            message=message,
         )
         yield written(case, specification, claim.claim.claim)
     for x in survey.classes:
         key = "" if x.part is None else x.part.key
         name = key or "no single condition"
-        rule = {Verdict.WITNESSED: Verdict.GAPS}.get(x.verdict, x.verdict)
+        rule = Verdict.GAPS if x.verdict is Verdict.WITNESSED else x.verdict
         case = Case(
             suite="classes of gaps",
             name=name,

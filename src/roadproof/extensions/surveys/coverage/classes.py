@@ -1,4 +1,4 @@
-"""The gaps of a spec set in classes by why each scenario fails, and which classes a drive belongs to.
+"""The classes of gaps of a spec set, by the condition to blame, and the classes of a drive.
 
 A gap of a set is a drive that starts in safety (initSafe), comes into danger later, and on which no scenario
 of the set holds at the start, for any lane and with the two vehicles in either role. It belongs to the class
@@ -13,23 +13,18 @@ out means putting true in its place, so that what is left holds wherever the sce
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import assert_never
 
-from roadproof.engines.search.question import zones_of
+from roadproof.engines.search.usual_road import zones_of
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.library import scenarios as s
-from roadproof.library.alike import likes_of
+from roadproof.extensions.surveys.composition import in_some_lane, with_vehicles
+from roadproof.extensions.traffic import scenario_parts
+from roadproof.extensions.traffic.scenario_parts import sector
+from roadproof.library import scenarios
 from roadproof.library.bind import bind
-from roadproof.library.compose import (
-    both,
-    either,
-    eventually,
-    implication,
-    in_some_lane,
-    negation,
-    with_vehicles,
-)
+from roadproof.library.compose import both, either, eventually, implication, negation
 from roadproof.library.elaborate import elaborate
-from roadproof.library.scenarios import sector
+from roadproof.library.sector_twins import sector_twins
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
@@ -38,20 +33,19 @@ from roadproof.logic.rewrite import without_names
 from roadproof.logic.show import text
 from roadproof.logic.syntax import Claim
 from roadproof.questions.basis import Basis
-from roadproof.semantics.exact.exact import DriveJudge, LazyJudge
+from roadproof.semantics.exact.judging import DriveJudge, LazyJudge
 from roadproof.world.road import Road
 
 Rebuild = Callable[[Formula], Formula]
 
 
 @dataclass(frozen=True)
-class Part:
-    """One part of a scenario with two vehicles.
+class ScenarioPart:
+    """One part of a scenario with two vehicles: a component, or one of its conditions.
 
-    ``component``: the definition that the template names, such as ``behaviourPOV_4``, and in words
-    ``description``. ``condition``: which of its conditions, as text; the whole component where it is
-    empty. ``without``: the scenario without the part, about SV, POV and L. ``finest``: whether it has no
-    parts itself.
+    ``component``: the definition that the template names, such as ``behaviourPOV_4``; ``description``: its
+    text. ``condition``: the condition as text; empty for the whole component. ``without``: the scenario
+    without the part, about SV, POV and L. ``finest``: whether it has no parts itself.
     """
 
     scenario: int
@@ -63,17 +57,19 @@ class Part:
 
     @property
     def key(self) -> str:
-        """A name for the part that no other part of the set has."""
+        """The name of the part, unique in the set."""
         return f"{self.component}: {self.condition}" if self.condition else self.component
 
 
-def parts_of(specification: Specification, number: int) -> tuple[Part, ...]:
-    """The components of a scenario that are not just true, each followed by its conditions.
+def parts_of(specification: Specification, number: int) -> tuple[ScenarioPart, ...]:
+    """Return the components of a scenario that are not just true, each followed by its conditions.
 
-    A component with one condition only is a part, its condition is no second one.
+    A component with a single condition counts once.
     """
-    whole = s.applied(specification, s.Scenario(number, specification.set_name)).formula
-    found: list[Part] = []
+    whole = scenarios.apply_scenario(
+        specification, scenarios.Scenario(number, specification.set_name)
+    ).formula
+    parts: list[ScenarioPart] = []
     for component, rebuild in _components(whole, number):
         if _body(component) == f.TRUE:
             continue
@@ -86,24 +82,28 @@ def parts_of(specification: Specification, number: int) -> tuple[Part, ...]:
         for shown, put in leaves:
             without = elaborate(specification, Claim((), as_syntax(put(f.TRUE))))
             finest = bool(shown) or len(leaves) == 1
-            found.append(Part(number, component.name, description, shown, without, finest))
-    return tuple(found)
+            parts.append(ScenarioPart(number, component.name, description, shown, without, finest))
+    return tuple(parts)
 
 
 def _components(whole: Formula, number: int) -> Iterator[tuple[f.Application, Rebuild]]:
-    """The conjuncts of the disturbance, each with what puts another formula in its place."""
+    """Yield the conjuncts of the disturbance, each with a function that replaces it."""
 
     def walk(current: Formula, rebuild: Rebuild, inside: bool) -> Iterator[tuple[f.Application, Rebuild]]:
         match current:
             case f.Application(name, _, body) if not inside:
-                yield from walk(body, rebuild, name == s.disturbance_name(number))
+                yield from walk(body, rebuild, name == scenarios.disturbance_name(number))
             case f.Application():
                 yield current, rebuild
             case f.And(parts):
                 for place, part in enumerate(parts):
                     yield from walk(part, _inside(current, place, rebuild), inside)
-            case _:
+            case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.Or():
                 return
+            case f.Until() | f.Eventually() | f.Always():
+                return
+            case _:
+                assert_never(current)
 
     yield from walk(whole, lambda new: new, False)
 
@@ -111,7 +111,7 @@ def _components(whole: Formula, number: int) -> Iterator[tuple[f.Application, Re
 def _conditions(
     current: Formula, rebuild: Rebuild, where: str, until: f.Until | None
 ) -> Iterator[tuple[str, Rebuild]]:
-    """The conditions below ``current``; ``where`` is the definition around it, ``until`` the U before it."""
+    """Yield the conditions below ``current``, in the definition ``where``, after the U of ``until``."""
     below: list[tuple[str, Rebuild]] = []
     match current:
         case f.And(parts):
@@ -123,8 +123,12 @@ def _conditions(
             below += _conditions(body, _inside(current, 0, rebuild), where, until)
         case f.Until(left, _, _):
             below += _conditions(left, _inside(current, 0, rebuild), where, current)
-        case _:
+        case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every():
             pass
+        case f.Not() | f.Or() | f.Application():
+            pass
+        case _:
+            assert_never(current)
     if len(below) > 1:
         yield from below
     else:
@@ -133,7 +137,7 @@ def _conditions(
 
 
 def _inside(around: Formula, place: int, rebuild: Rebuild) -> Rebuild:
-    """Put a formula in the place of one child of ``around``, where true goes away in a conjunction."""
+    """Return a function that replaces one child of ``around``; a conjunction drops true."""
     parts = f.children(around)
 
     def put(new: Formula) -> Formula:
@@ -146,7 +150,7 @@ def _inside(around: Formula, place: int, rebuild: Rebuild) -> Rebuild:
 
 
 def _is_simple(formula: f.Application) -> bool:
-    """Whether a definition speaks of one instant, and there of lanes only or of numbers only."""
+    """Return whether a definition is about one instant, and about lanes only or numbers only."""
     below = list(subformulas(formula))
     lanes = any(isinstance(x, f.Occupies) for x in below)
     numbers = any(isinstance(x, f.Compare) for x in below)
@@ -163,23 +167,29 @@ PROOF = 60.0  # units of work for a claim of coverage
 
 
 def two_vehicle_numbers(specification: Specification) -> tuple[int, ...]:
-    """The scenarios between SV and one POV."""
+    """Return the scenarios between SV and one POV."""
     name = specification.set_name
-    numbers = s.numbers_of(specification)
-    return tuple(n for n in numbers if len(s.vehicles_of(specification, s.Scenario(n, name))) == len(s.PAIR))
+    numbers = scenarios.numbers_of(specification)
+    return tuple(
+        n
+        for n in numbers
+        if len(scenarios.vehicles_of(specification, scenarios.Scenario(n, name))) == len(scenarios.PAIR)
+    )
 
 
 def with_only(home: Specification, numbers: Collection[int]) -> Specification:
     """Return the same definitions, of scenarios only those with these numbers."""
-    kept = {name: x for name, x in home.definitions.items() if s.number_in(name) in {None, *numbers}}
-    return Specification(home.library, home.set_name, home.options, kept)
+    definitions = {
+        name: x for name, x in home.definitions.items() if scenarios.number_in(name) in {None, *numbers}
+    }
+    return Specification(home.library, home.set_name, home.options, definitions)
 
 
 def sectors_of(specification: Specification) -> tuple[tuple[int, ...], ...]:
-    """The two-vehicle scenarios, those of one road sector together, in the order of their numbers."""
+    """Return the two-vehicle scenarios by road sector, in the order of their numbers."""
     sectors: dict[Formula, list[int]] = {}
     for number in two_vehicle_numbers(specification):
-        where = sector(specification, number, s.PAIR).formula
+        where = sector(specification, number, scenarios.PAIR).formula
         sectors.setdefault(without_names(where), []).append(number)
     return tuple(map(tuple, sectors.values()))
 
@@ -187,68 +197,76 @@ def sectors_of(specification: Specification) -> tuple[tuple[int, ...], ...]:
 def numbers_on(
     road: Road, specification: Specification, sectors: Sequence[tuple[int, ...]]
 ) -> tuple[int, ...]:
-    """The scenarios of the sectors whose zones the road has; the others cannot hold on it."""
+    """Return the scenarios of the sectors whose zones the road has; the others cannot hold on it."""
     zones = {lanelet.zone for lanelet in road.lanelets}
-    found: list[int] = []
+    present: list[int] = []
     for numbers in sectors:
-        if zones_of(sector(specification, numbers[0], s.PAIR).formula) <= zones:
-            found += numbers
-    return tuple(found)
+        if zones_of(sector(specification, numbers[0], scenarios.PAIR).formula) <= zones:
+            present += numbers
+    return tuple(present)
 
 
 def claims_of(specification: Specification) -> tuple[Query, ...]:
-    """Claims that together say that the set has no gap on a road all of whose lanelets are in a zone.
+    """Return claims that together imply that the set has no gap on a road whose lanelets are all in zones.
 
-    One for each road sector: where SV is in L, one of the sector's scenarios holds for L. A last one:
-    vehicles that are each in a zone are in one of the sectors.
+    One for each road sector: if SV is in L, one of the sector's scenarios holds for L. A last one: vehicles
+    that are each in a zone are in one of the sectors.
     """
     sectors = sectors_of(specification)
     claims = [
         implication(starts_in(specification, numbers), either(*in_either_role(specification, numbers)))
         for numbers in sectors
     ]
-    somewhere = both(*(s.in_some_zone(specification, vehicle) for vehicle in s.PAIR))
-    some_sector = either(*(sector(specification, numbers[0], s.PAIR) for numbers in sectors))
+    somewhere = both(*(scenario_parts.in_some_zone(specification, vehicle) for vehicle in scenarios.PAIR))
+    some_sector = either(*(sector(specification, numbers[0], scenarios.PAIR) for numbers in sectors))
     return (*claims, implication(somewhere, some_sector))
 
 
 def starts(specification: Specification) -> tuple[Query, ...]:
-    """That the two vehicles are safe and in danger later, and what else drives are asked to begin with."""
-    later = eventually(s.danger(specification, *s.PAIR))
-    return s.safe(specification, *s.PAIR), later, *s.asked_between(specification, *s.PAIR)
+    """Return the conditions of a start: safety, later danger, and further requirements on the start."""
+    later = eventually(scenarios.danger(specification, *scenarios.PAIR))
+    return (
+        scenario_parts.safe(specification, *scenarios.PAIR),
+        later,
+        *scenario_parts.start_requirements(specification, *scenarios.PAIR),
+    )
 
 
 def starts_in(specification: Specification, numbers: Sequence[int]) -> Query:
-    """Safety and later danger in the road sector of these scenarios, with SV in L."""
-    where = sector(specification, numbers[0], s.PAIR)
-    return both(where, s.in_lane(specification, s.SUBJECT), *starts(specification))
+    """Return the formula of a start in the road sector of these scenarios, with SV in L."""
+    where = sector(specification, numbers[0], scenarios.PAIR)
+    return both(where, scenario_parts.in_lane(specification, scenarios.SUBJECT), *starts(specification))
 
 
 def in_either_role(specification: Specification, numbers: Sequence[int], set_name: str = "") -> list[Query]:
-    """The scenarios for L, each with the two vehicles in either role; ``set_name``: those of another set."""
+    """Return the scenarios for L, each with the two vehicles in either role; ``set_name``: of another set."""
     name = set_name or specification.set_name
-    roles = (s.PAIR, s.PAIR[::-1])
-    return [s.applied(specification, s.Scenario(n, name), pair) for pair in roles for n in numbers]
+    roles = (scenarios.PAIR, scenarios.PAIR[::-1])
+    return [
+        scenarios.apply_scenario(specification, scenarios.Scenario(n, name), pair)
+        for pair in roles
+        for n in numbers
+    ]
 
 
-def missed(specification: Specification, numbers: Sequence[int]) -> Query:
-    """Safety and later danger, and none of the scenarios for any lane and either role."""
-    none = (negation(in_some_lane(x, s.LANE)) for x in in_either_role(specification, numbers))
+def gap_formula(specification: Specification, numbers: Sequence[int]) -> Query:
+    """Return the formula of a gap: a start, and no scenario for any lane and either role."""
+    none = (negation(in_some_lane(x, scenarios.LANE)) for x in in_either_role(specification, numbers))
     return both(*starts(specification), *none)
 
 
-def caught(specification: Specification, numbers: Sequence[int], set_name: str) -> Query:
-    """That one of the scenarios of a set holds, for some lane and either role."""
-    return in_some_lane(either(*in_either_role(specification, numbers, set_name)), s.LANE)
+def catch_formula(specification: Specification, numbers: Sequence[int], set_name: str) -> Query:
+    """Return the formula that a scenario of a set holds, for some lane and either role."""
+    return in_some_lane(either(*in_either_role(specification, numbers, set_name)), scenarios.LANE)
 
 
-def replaced_in(narrow: Specification, wide: Specification) -> tuple[str, ...]:
-    """The names of the definitions that differ between two sets."""
+def changed_definitions(narrow: Specification, wide: Specification) -> tuple[str, ...]:
+    """Return the names of the definitions that differ between two sets."""
     return tuple(n for n, d in wide.definitions.items() if narrow.definitions.get(n) != d)
 
 
 def sets_between(library: Library, narrow: str, wide: str) -> tuple[str, ...]:
-    """The sets from the first extension of ``narrow`` to ``wide``; none where that does not extend it."""
+    """Return the sets from the first extension of ``narrow`` to ``wide``; none if that does not extend it."""
     chain: list[str] = []
     name = wide
     while name and name != narrow:
@@ -259,29 +277,29 @@ def sets_between(library: Library, narrow: str, wide: str) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class GapGroup:
-    """A component with its conditions, which are settled together; None: no single condition to blame."""
+    """A component with its conditions, decided together; None: the class without a condition to blame."""
 
-    component: Part | None
-    conditions: tuple[Part, ...] = ()
+    component: ScenarioPart | None
+    conditions: tuple[ScenarioPart, ...] = ()
 
     @property
     def title(self) -> str:
         return "no single condition" if self.component is None else self.component.component
 
     @property
-    def parts(self) -> tuple[Part | None, ...]:
+    def parts(self) -> tuple[ScenarioPart | None, ...]:
         return (self.component, *self.conditions)
 
 
 class GapClasses:
-    """Which classes a drive belongs to. A class stands for the same part in every road sector."""
+    """The classes of gaps of a set. A class stands for one part of a disturbance in every road sector."""
 
     def __init__(self, basis: Basis) -> None:
         self.specification = basis.specification
         self.values = basis.all_values()
         self.sectors = sectors_of(self.specification)
         self.numbers = tuple(number for sector in self.sectors for number in sector)
-        self.likes = likes_of(self.specification)
+        self.twins = sector_twins(self.specification)
         self.by_number = {number: parts_of(self.specification, number) for number in self.numbers}
         self.parts = [part for number in self.sectors[0] for part in self.by_number[number]]
         self.finest = frozenset(part.key for part in self.parts if part.finest)
@@ -290,12 +308,12 @@ class GapClasses:
         self.near_misses: dict[str, Query] = {}
 
     @property
-    def every(self) -> list[Part]:
+    def every(self) -> list[ScenarioPart]:
         """The parts of all scenarios, in every road sector."""
         return [part for parts in self.by_number.values() for part in parts]
 
     def groups(self) -> list[GapGroup]:
-        """All classes, for the scenarios of the first road sector: the others repeat their disturbances."""
+        """Return all classes, by the scenarios of the first road sector, whose disturbances others repeat."""
         groups: list[GapGroup] = []
         for part in self.parts:
             if part.condition:
@@ -304,53 +322,53 @@ class GapClasses:
                 groups.append(GapGroup(part))
         return [*groups, GapGroup(None)]
 
-    def counterparts(self, part: Part) -> Iterator[tuple[Part, tuple[int, ...]]]:
-        """The same part of the same disturbance in every road sector, with the sector's scenarios."""
+    def counterparts(self, part: ScenarioPart) -> Iterator[tuple[ScenarioPart, tuple[int, ...]]]:
+        """Yield this part of the disturbance in every road sector, with the sector's scenarios."""
         place = [x.key for x in self.by_number[part.scenario]].index(part.key)
         for numbers in self.sectors:
             for number in numbers:
-                if self.likes[number] == self.likes[part.scenario]:
+                if self.twins[number] == self.twins[part.scenario]:
                     yield self.by_number[number][place], numbers
 
     def numbers_on(self, road: Road) -> tuple[int, ...]:
-        """The scenarios whose sector's zones the road has; the others cannot hold on it."""
+        """Return the scenarios whose sector's zones the road has; the others cannot hold on it."""
         return numbers_on(road, self.specification, self.sectors)
 
-    def missed(self, numbers: tuple[int, ...]) -> Query:
-        """That a drive is a gap, as ``claims.missed``; put together once, since it is long."""
+    def gap_formula(self, numbers: tuple[int, ...]) -> Query:
+        """Return the formula of a gap, composed once."""
         if numbers not in self.gaps:
-            self.gaps[numbers] = missed(self.specification, numbers)
+            self.gaps[numbers] = gap_formula(self.specification, numbers)
         return self.gaps[numbers]
 
-    def near(self, part: Part, numbers: Collection[int]) -> Query:
-        """That a drive is a near miss of the part, or of a counterpart among these scenarios."""
+    def near_miss_of(self, part: ScenarioPart, numbers: Collection[int]) -> Query:
+        """Return the formula of a near miss of the part, or of a counterpart among these scenarios."""
         return either(*(self._near_miss(p) for p, _ in self.counterparts(part) if p.scenario in numbers))
 
-    def _near_miss(self, part: Part) -> Query:
-        """As ``near_miss``, put together once."""
+    def _near_miss(self, part: ScenarioPart) -> Query:
+        """Return ``near_miss``, composed once."""
         if part.key not in self.near_misses:
             self.near_misses[part.key] = near_miss(part)
         return self.near_misses[part.key]
 
     def of(self, file: DriveFile) -> tuple[str, ...]:
-        """The keys of the parts without which their scenario would hold for some lane and either role."""
+        """Return the keys of the parts for which a drive is a near miss."""
         if file.road not in self.bound:
             self.bound[file.road] = self.bind(file.road)
         # Definitions of users may speak of what a drive lacks, which is an error.
         judge = (DriveJudge if self.specification.library.files else LazyJudge).on(file.drive)
-        held = {key: judge.holds(formula) for key, formula in self.bound[file.road].items()}
-        return tuple(key for key, holds in held.items() if holds)
+        truth = {key: judge.holds(formula) for key, formula in self.bound[file.road].items()}
+        return tuple(key for key, holds in truth.items() if holds)
 
     def bind(self, road: Road) -> dict[str, Formula]:
-        """By key, that a drive on the road is a near miss of the part."""
+        """Return the formulas of near misses on a road, by the key of the part."""
         numbers = self.numbers_on(road)
-        every = f.Or(tuple(self.near(part, numbers).formula for part in self.parts))
+        every = f.Or(tuple(self.near_miss_of(part, numbers).formula for part in self.parts))
         # Equal parts as one object: all look up what they know, and comparing trees takes long.
-        [whole] = f.share([bind(f.share([every], _same)[0], road, {}, self.values)], _same)
+        [whole] = f.hash_cons([bind(f.hash_cons([every], _same)[0], road, {}, self.values)], _same)
         return {part.key: formula for part, formula in zip(self.parts, f.children(whole), strict=True)}
 
-    def has(self, part: Part | None, keys: Collection[str]) -> bool:
-        """Whether a gap with these keys is in the class of ``part``."""
+    def has(self, part: ScenarioPart | None, keys: Collection[str]) -> bool:
+        """Return whether a gap with these keys is in the class of ``part``."""
         return part.key in keys if part is not None else self.finest.isdisjoint(keys)
 
 
@@ -358,11 +376,11 @@ def _same(part: Formula) -> Formula:
     return part
 
 
-def near_miss(part: Part) -> Query:
-    """That the scenario holds without the part, for some lane and in either role."""
-    return in_some_lane(either(part.without, exchanged(part.without)), s.LANE)
+def near_miss(part: ScenarioPart) -> Query:
+    """Return the formula that a scenario holds without the part, for some lane and in either role."""
+    return in_some_lane(either(part.without, swap_roles(part.without)), scenarios.LANE)
 
 
-def exchanged(query: Query) -> Query:
-    """``query`` with SV and POV in each other's place."""
-    return with_vehicles(query, dict(zip(s.PAIR, s.PAIR[::-1], strict=True)))
+def swap_roles(query: Query) -> Query:
+    """Return ``query`` with SV and POV swapped."""
+    return with_vehicles(query, dict(zip(scenarios.PAIR, scenarios.PAIR[::-1], strict=True)))

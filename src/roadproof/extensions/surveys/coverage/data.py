@@ -1,15 +1,15 @@
-"""Which disturbances a set misses, as plain data."""
+"""The gaps of a spec set as plain data."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from roadproof.extensions.surveys.coverage import kept as shown
+from roadproof.extensions.surveys.coverage import schema
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer, Gap, Need, names_of
-from roadproof.extensions.surveys.coverage.kept import SCHEMA, CoverageData
+from roadproof.extensions.surveys.coverage.schema import SCHEMA, CoverageData
 from roadproof.questions.basis import Basis
-from roadproof.questions.question import Place, heading_of
+from roadproof.questions.question import EvidencePlace, heading_of
+from roadproof.world.not_read import road_not_read_note
 from roadproof.world.road import Road
-from roadproof.world.unread import unread_of_road
 
 if TYPE_CHECKING:
     from roadproof.extensions.surveys.coverage.question import CoverageView
@@ -21,36 +21,36 @@ def coverage_data(
     basis: Basis,
     wider: Sequence[str],
     view: "CoverageView",
-    place: Place,
+    place: EvidencePlace,
     seconds: float,
     roads: Sequence[Road],
 ) -> CoverageData:
     """Return the view as ``--json`` prints it."""
-    survey, gaps, classes = view.survey, list[shown.NumberedGap](), list[shown.CountedClass]()
+    survey, gaps, classes = view.survey, list[schema.NumberedGap](), list[schema.CountedClass]()
     for x in survey.classes:
         first = len(gaps) + 1
         gaps += [_gap(number, gap, place) for number, gap in enumerate(x.gaps, first)]
         classes.append(_class(x, range(first, len(gaps) + 1), place))
-    said: dict[str, Any] = {"set": basis.specification.set_name, **basis.said()}
     return CoverageData(
         **heading_of(SCHEMA, basis),
-        **said,
+        set=basis.specification.set_name,
+        **basis.common_data(),
         wider=tuple(wider),
         verdict=survey.verdict,
         claims=claims_data(view, place),
         classes=tuple(classes),
         gaps=tuple(gaps),
         needs=tuple(_need(x, place) for x in survey.needs),
-        traffic=None if survey.traffic is None else survey.traffic.told,
-        left_out=tuple(x for road in roads for x in unread_of_road(road)),
+        traffic=None if survey.traffic is None else survey.traffic.data,
+        left_out=tuple(x for road in roads for x in road_not_read_note(road)),
         seconds=round(seconds, 1),
     )
 
 
-def claims_data(view: "CoverageView", place: Place) -> tuple[shown.Claim, ...]:
-    """Return the claims that there is no gap."""
+def claims_data(view: "CoverageView", place: EvidencePlace) -> tuple[schema.CoverageClaimData, ...]:
+    """Return the claims of coverage as plain data."""
     return tuple(
-        shown.Claim(
+        schema.CoverageClaimData(
             claim=x.claim.text,
             verdict=x.verdict,
             certificate=None if x.certificate is None else place(name, view.known[name]),
@@ -60,16 +60,18 @@ def claims_data(view: "CoverageView", place: Place) -> tuple[shown.Claim, ...]:
     )
 
 
-def class_data(x: ClassAnswer, place: Place) -> shown.KeptClass:
-    """Return a class with its gaps."""
-    return shown.KeptClass(**_said(x, place), gaps=tuple(shown.Gap(**_drive(y, place)) for y in x.gaps))
+def class_data(x: ClassAnswer, place: EvidencePlace) -> schema.GapClassDetail:
+    """Return a class with its gaps as plain data."""
+    return schema.GapClassDetail(
+        **_class_fields(x, place), gaps=tuple(schema.GapData(**_drive(y, place)) for y in x.gaps)
+    )
 
 
-def _gap(number: int, gap: Gap, place: Place) -> shown.NumberedGap:
-    return shown.NumberedGap(number=number, **_drive(gap, place))
+def _gap(number: int, gap: Gap, place: EvidencePlace) -> schema.NumberedGap:
+    return schema.NumberedGap(number=number, **_drive(gap, place))
 
 
-def _drive(gap: Gap, place: Place) -> dict[str, Any]:
+def _drive(gap: Gap, place: EvidencePlace) -> dict[str, Any]:
     file = gap.drive.file
     return {
         "road": file.road.name,
@@ -82,12 +84,12 @@ def _drive(gap: Gap, place: Place) -> dict[str, Any]:
     }
 
 
-def _class(x: ClassAnswer, numbers: range, place: Place) -> shown.CountedClass:
-    said = _said(x, place)
-    return shown.CountedClass(**said, gaps=tuple(numbers), in_traffic=x.in_traffic, trace=x.trace)
+def _class(x: ClassAnswer, numbers: range, place: EvidencePlace) -> schema.CountedClass:
+    class_fields = _class_fields(x, place)
+    return schema.CountedClass(**class_fields, gaps=tuple(numbers), in_traffic=x.in_traffic, trace=x.trace)
 
 
-def _said(x: ClassAnswer, place: Place) -> dict[str, Any]:
+def _class_fields(x: ClassAnswer, place: EvidencePlace) -> dict[str, Any]:
     return {
         **names_of(x.part),
         "verdict": x.verdict,
@@ -98,9 +100,9 @@ def _said(x: ClassAnswer, place: Place) -> dict[str, Any]:
     }
 
 
-def _need(x: Need, place: Place) -> shown.Need:
+def _need(x: Need, place: EvidencePlace) -> schema.NeedData:
     file = None if x.drive is None else x.drive.file
-    return shown.Need(
+    return schema.NeedData(
         definition=x.definition,
         extends=x.parent,
         verdict=x.verdict,

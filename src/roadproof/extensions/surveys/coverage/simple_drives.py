@@ -1,7 +1,7 @@
-"""Simple drives of two vehicles, and how hard a drive is to read.
+"""Simple drives of two vehicles, and a measure of how hard a drive is to read.
 
-They are tried before any solver is asked: what is found in them is easy to read. Nothing rests on them, since
-every drive is judged.
+They are tried before a solver, because they are easy to read. No verdict rests on them, because every drive
+is judged.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,11 +23,11 @@ ZERO = Fraction(0)
 
 
 @dataclass(frozen=True)
-class Across:
-    """Metres to the left in one move each, one after the other, from ``start`` s on.
+class LateralMoves:
+    """Moves across the road, each in metres to the left, one after the other from ``start`` (s) on.
 
-    ``place``: where in its lane the vehicle starts: -1 at the right marking, 0 in the middle, 1 at the left,
-    2 across the left one.
+    ``place``: the start in the lane: -1 at the right marking, 0 in the middle, 1 at the left marking, 2
+    across it.
     """
 
     place: int
@@ -37,10 +37,10 @@ class Across:
 
 @dataclass(frozen=True)
 class Approach:
-    """How SV comes near POV, which starts ``gap`` m ahead of it, front to front.
+    """The longitudinal approach of SV to POV, which starts ``gap`` m ahead of it, front to front.
 
-    ``faster``: by how many m/s SV is faster at the start; ``speeds_up`` and ``slows_down``: from when on
-    (s) SV gains, or POV loses, speed for 2 s.
+    ``faster``: the speed of SV minus that of POV at the start (m/s); ``speeds_up``, ``slows_down``: the time
+    (s) at which SV gains, or POV loses, speed for 2 s.
     """
 
     gap: Fraction
@@ -50,10 +50,10 @@ class Approach:
 
 
 def simple_drives(road: Road, vehicle: Vehicle) -> Iterator[Drive]:
-    """All simple drives on a road of parallel lanes.
+    """Yield all simple drives on a road of parallel lanes.
 
-    One of the vehicles does not move across, or both move alike. Where there are more than two lanes, only
-    drives on which both move, with a lane between them at the start.
+    One of the vehicles makes no lateral moves, or both move alike. With more than two lanes, both move, with
+    a lane between them at the start.
     """
     lanes = sorted({lanelet.d for lanelet in road.lanelets})
     across = list(_across(lanes, vehicle))
@@ -85,18 +85,18 @@ def _alongs() -> Iterator[Approach]:
 
 def _across(
     lanes: Sequence[tuple[Fraction, Fraction]], vehicle: Vehicle
-) -> Iterator[tuple[Fraction, Across]]:
-    """Ways across the road that stay on it, each with where its left edge starts."""
+) -> Iterator[tuple[Fraction, LateralMoves]]:
+    """Yield lateral moves that stay on the road, each with the initial position of the left edge (m)."""
     width = lanes[0][1] - lanes[0][0]
     lane_change, drift = width, (width - vehicle.width) / 2 - CLOSE
-    ways = [Across(place) for place in (-1, 0, 1, 2)]
+    ways = [LateralMoves(place) for place in (-1, 0, 1, 2)]
     for side in (1, -1):
-        ways.append(Across(0, (side * drift,)))
-        ways.append(Across(-side, (side * drift * 7 / 10,)))
-        ways.append(Across(0, (side * lane_change,)))
-        ways.append(Across(0, (side * lane_change,), Fraction(8)))
-        ways.append(Across(0, (side * lane_change, -side * lane_change)))
-        ways.append(Across(0, (side * drift, -side * drift, side * lane_change)))
+        ways.append(LateralMoves(0, (side * drift,)))
+        ways.append(LateralMoves(-side, (side * drift * 7 / 10,)))
+        ways.append(LateralMoves(0, (side * lane_change,)))
+        ways.append(LateralMoves(0, (side * lane_change,), Fraction(8)))
+        ways.append(LateralMoves(0, (side * lane_change, -side * lane_change)))
+        ways.append(LateralMoves(0, (side * drift, -side * drift, side * lane_change)))
     for (right, left), way in product(lanes, ways):
         free = (left - right - vehicle.width) / 2 - CLOSE
         start = left + CLOSE if way.place == 2 else (right + left + vehicle.width) / 2 + way.place * free
@@ -107,13 +107,13 @@ def _across(
 
 def _motion(
     vehicle: Vehicle,
-    across: tuple[Fraction, Across],
+    across: tuple[Fraction, LateralMoves],
     s: Fraction,
     speed: Fraction,
     changes: Fraction | None,
     by: Fraction,
 ) -> Motion:
-    """A motion that changes its speed for 2 s from ``changes`` on, by ``by`` m/s each second."""
+    """Return a motion that accelerates by ``by`` m/s^2 for 2 s from the time ``changes`` (s) on."""
     d, way = across
     half = MOVE / 2
     lateral: list[tuple[Fraction, Fraction, Fraction]] = []
@@ -132,8 +132,11 @@ def _motion(
 
 
 def effort_of(file: DriveFile) -> tuple[int, int, int, Fraction]:
-    """What makes a drive hard to read: vehicles that move across the road, accelerations, vehicles that start
-    off the middle of a lane; and how long it takes (s)."""
+    """Return how hard a drive is to read; smaller is simpler.
+
+    It counts vehicles that move across the road, accelerations, and vehicles that start off the middle of a
+    lane; the last number is its duration (s).
+    """
     motions = file.drive.vehicles.values()
     movers = sum(m.v_lat != 0 or any(p.a_lat for p in m.pieces) for m in motions)
     changes = sum((p.a_lon != 0 or p.j_lon != 0) + (p.a_lat != 0) for m in motions for p in m.pieces)

@@ -1,7 +1,7 @@
-"""Gaps of a spec set among the disturbances of recorded traffic, in the classes of the survey.
+"""Gaps of a spec set among the disturbances of recorded traffic, by class.
 
-A disturbance (dangerArises of a pair) is read as samples that stay as the last one is for ever, so that
-the end of a trace leaves nothing undecided. What several windows of one recording show counts once.
+A disturbance (dangerArises of a pair) is read as if its last sample lasted for ever. So the end of a trace
+leaves nothing undecided. A disturbance in several windows of one recording counts once.
 """
 
 from collections.abc import Callable, Iterator
@@ -15,10 +15,10 @@ from roadproof.extensions.surveys.coverage.answers import GapTrace, GapTraffic
 from roadproof.extensions.surveys.coverage.classes import GapClasses
 from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording
 from roadproof.extensions.traffic.evaluate.one_trace import OneTrace, cut_trace
-from roadproof.extensions.traffic.evaluate.questions import Settings, ask
-from roadproof.extensions.traffic.evaluate.totals import Counts, without_repeats
+from roadproof.extensions.traffic.evaluate.questions import EvaluationSettings, compile_questions
+from roadproof.extensions.traffic.evaluate.totals import ShownMoments, without_repeats
 from roadproof.extensions.traffic.formats.recording import Recording
-from roadproof.extensions.traffic.formats.reliable import losses_of
+from roadproof.extensions.traffic.formats.reliable import left_out_notes
 from roadproof.extensions.traffic.formats.source import RecordingSource
 from roadproof.extensions.traffic.formats.sources import copies_among, find_sources
 from roadproof.library.bind import bind
@@ -41,15 +41,15 @@ class Recordings:
 
 @dataclass(frozen=True)
 class GapQuestion:
-    """Whether a trace is a gap; with the key of a part, whether it would be none without that part."""
+    """The question whether a trace is a gap, or with the key of a part, a near miss of that part."""
 
     without: str | None = None
 
 
 def recordings_in(folder: Path, strict: bool = False) -> Recordings:
-    """The recordings of a folder; ``strict``: each as a whole or not at all.
+    """Return the recordings of a folder; ``strict``: refuse those that are not read as a whole.
 
-    Raises ``InputError``, also where two have the same content.
+    Raises ``InputError``, also if two have the same content.
     """
     sources = find_sources(folder, strict)
     for fault in copies_among(sources, {source.name: source.digests() for source in sources}).values():
@@ -58,43 +58,47 @@ def recordings_in(folder: Path, strict: bool = False) -> Recordings:
 
 
 def count_in_traffic(basis: Basis, recordings: Recordings, say: Callable[[str], None]) -> GapTraffic:
-    """The disturbances of all recordings, and those that are missed; ``say`` is told how many so far."""
-    counted = Counts()
+    """Return counts of the disturbances and gaps of all recordings; ``say`` is called with progress."""
+    counted = ShownMoments()
     disturbances = 0
-    missed: list[GapTrace] = []
+    gaps: list[GapTrace] = []
     left_out: list[str] = []
     for disturbances, trace in enumerate(disturbances_in(basis, recordings, counted, left_out), 1):
-        missed += [trace] if trace.missed else []
-        say(f"{disturbances} disturbances in traffic, {len(missed)} of them missed")
+        gaps += [trace] if trace.missed else []
+        say(f"{disturbances} disturbances in traffic, {len(gaps)} of them missed")
     repeats = sum(repeat.what == "trace" for repeat in counted.repeats)
-    return GapTraffic(recordings.folder, disturbances, tuple(missed), repeats, tuple(left_out))
+    return GapTraffic(recordings.folder, disturbances, tuple(gaps), repeats, tuple(left_out))
 
 
 def disturbances_in(
-    basis: Basis, recordings: Recordings, counted: Counts | None = None, left_out: list[str] | None = None
+    basis: Basis,
+    recordings: Recordings,
+    counted: ShownMoments | None = None,
+    left_out: list[str] | None = None,
 ) -> Iterator[GapTrace]:
-    """The disturbances of all recordings; ``counted`` is told of those that are repeated.
+    """Yield the disturbances of all recordings; ``counted`` collects repeated ones.
 
-    ``left_out`` gets notes on vehicles that recordings were read without.
-
-    Raises ``InputError`` for what is no recording.
+    ``left_out`` collects notes on vehicles that recordings were read without. Raises ``InputError`` for a
+    file that is no recording.
     """
     classes = GapClasses(basis)
-    settings = Settings(
+    settings = EvaluationSettings(
         basis.library,
         basis.specification.options,
         classes.values,
         (basis.specification.set_name,),
         (classes.values[MIN_DANGER],),
     )
-    known = counted or Counts()
+    known = counted or ShownMoments()
     for source in recordings.sources:
         recording = source.read()
         if left_out is not None:
-            left_out += losses_of(recording)
+            left_out += left_out_notes(recording)
         place = {int(number): k for k, number in enumerate(recording.vehicle_id)}
         monitors: dict[Road, Monitor[GapQuestion]] = {}
-        findings = without_repeats(evaluate_recording(recording, ask(settings, recording.rate)), known)
+        findings = without_repeats(
+            evaluate_recording(recording, compile_questions(settings, recording.rate)), known
+        )
         for trace in findings.traces:
             frames = (trace.start_frame, trace.end_frame)
             pair = dict(zip(PAIR, (place[trace.first], place[trace.second]), strict=True))
@@ -102,20 +106,20 @@ def disturbances_in(
             if cut.road not in monitors:
                 monitors[cut.road] = _monitor(classes, cut.road)
             answers = monitors[cut.road].evaluate(cut.batch, "clip").answers
-            true = [missed.without for missed, answer in answers.items() if answer.true[0]]
+            true = [question.without for question, answer in answers.items() if answer.true[0]]
             keys = tuple(key for key in true if key is not None)
             alone = None in true and classes.has(None, keys)
             yield GapTrace(recording.name, trace.first, trace.second, frames, None in true, keys, alone)
 
 
 def _monitor(classes: GapClasses, road: Road) -> Monitor[GapQuestion]:
-    gap = bind(classes.missed(classes.numbers_on(road)).formula, road, {}, classes.values)
+    gap = bind(classes.gap_formula(classes.numbers_on(road)).formula, road, {}, classes.values)
     near = {GapQuestion(key): formula for key, formula in classes.bind(road).items()}
     return compile({GapQuestion(): gap, **near})
 
 
 def _cut(recording: Recording, pair: dict[str, int], frames: tuple[int, int]) -> OneTrace:
-    """Two vehicles from the first frame to the last, and as at the last one for some seconds more."""
+    """Return two vehicles from the first frame to the last, whose values then stay for ``TAIL`` seconds."""
     trace = cut_trace(recording, recording.name, pair, frames)
     more = round(TAIL * float(recording.rate))
     batch = trace.batch

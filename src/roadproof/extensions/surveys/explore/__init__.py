@@ -1,1 +1,1 @@
-"""For which values of parameters and limits a formula has a drive, and how far a measure can go."""
+"""Explorations: values of parameters and limits with a drive, and extremes of a measure."""

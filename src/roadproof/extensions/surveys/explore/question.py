@@ -1,31 +1,31 @@
-"""The question for which values a formula has a drive, as plain data, with its claims and its view."""
+"""The question for which values formulas have drives: its settings, claims and view."""
 
 from collections.abc import Mapping
 from dataclasses import field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.question import SearchOptions, Setting
+from roadproof.engines.setting import Search, SearchOptions, Setting
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import road_of
-from roadproof.extensions.surveys.explore.asking import Explorable, ask_for
 from roadproof.extensions.surveys.explore.data import (
     SCHEMA,
-    AskedFormula,
+    ExplorationSettings,
     ExploreData,
-    Exploring,
+    ExploredFormula,
     exploration_data,
 )
+from roadproof.extensions.surveys.explore.explorable import Explorable, explorable_of
 from roadproof.extensions.surveys.explore.values import ExplorationResult, explore
 from roadproof.extensions.surveys.extremes.extreme import PROOF
 from roadproof.extensions.surveys.extremes.measure import Sense
-from roadproof.extensions.surveys.extremes.points import Asking, Remembered
+from roadproof.extensions.surveys.extremes.points import ClaimGenerator, JudgementCache
+from roadproof.extensions.surveys.survey import replay_steps
 from roadproof.library.elaborate import read_claim
-from roadproof.library.scenarios import Scenario, applied, numbers_of
+from roadproof.library.scenarios import Scenario, apply_scenario, numbers_of
 from roadproof.questions.basis import Basis
-from roadproof.questions.question import Answers, Place, Steps, heading_of, seen
+from roadproof.questions.question import Answers, EvidencePlace, Steps, heading_of
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 from roadproof.world.road import Road
@@ -33,19 +33,19 @@ from roadproof.world.road import Road
 
 @dataclass(frozen=True)
 class ExploreView:
-    """What was explored, by the names of formulas, in their order."""
+    """The view of explorations by the names of formulas, in their order."""
 
     explored: Mapping[str, ExplorationResult]
 
 
 @dataclass(frozen=True)
 class ExploreQuestion:
-    """The question for which values there is a drive, and how far measures can go."""
+    """The question for which values formulas have drives, and for extremes of measures."""
 
     kind: ClassVar[str] = "explore"
     basis: Basis
-    asked: Exploring
-    remembered: Remembered = field(default_factory=Remembered, compare=False, repr=False)
+    settings: ExplorationSettings
+    remembered: JudgementCache = field(default_factory=JudgementCache, compare=False, repr=False)
 
     @property
     def work(self) -> Work:
@@ -53,9 +53,9 @@ class ExploreQuestion:
         return Work(self.basis.effort, PROOF, staged=True, moves=False)
 
     @classmethod
-    def of(cls, basis: Basis, asked: object, where: str) -> "ExploreQuestion":
+    def of(cls, basis: Basis, settings: object, where: str) -> "ExploreQuestion":
         """Return the question that plain data ask. Raises ``InputError``."""
-        question = cls(basis, read(Exploring, asked, where))
+        question = cls(basis, read(ExplorationSettings, settings, where))
         try:
             searches = [x.search for x in question.named.values()]
         except UsageError as error:
@@ -68,11 +68,11 @@ class ExploreQuestion:
 
     @cached_property
     def explorables(self) -> tuple[Explorable, ...]:
-        """What is asked of each formula. Raises ``InputError``, ``UsageError``."""
-        return tuple(map(self._explorable, self.asked.formulas))
+        """The exploration of each formula. Raises ``InputError``, ``UsageError``."""
+        return tuple(map(self._explorable, self.settings.formulas))
 
-    def _explorable(self, formula: AskedFormula) -> Explorable:
-        asked, place = self.asked, self.asked.place
+    def _explorable(self, formula: ExploredFormula) -> Explorable:
+        settings, place = self.settings, self.settings.place
         home = self.basis.specification.in_set(formula.set)
         setting = Setting(
             self.road,
@@ -90,59 +90,59 @@ class ExploreQuestion:
         query = read_claim(home, formula.formula)
         search = Search(home, query, setting, options, scenario=formula.scenario)
         measures: list[tuple[Sense, str]] = []
-        measures += [] if asked.least is None else [("least", asked.least)]
-        measures += [] if asked.greatest is None else [("greatest", asked.greatest)]
-        varied = [(x.name, x.low, x.high) for x in asked.vary]
-        return ask_for(search, varied, asked.steps, asked.precision, measures, formula.when)
+        measures += [] if settings.least is None else [("least", settings.least)]
+        measures += [] if settings.greatest is None else [("greatest", settings.greatest)]
+        varied = [(x.name, x.low, x.high) for x in settings.vary]
+        return explorable_of(search, varied, settings.steps, settings.precision, measures, formula.when)
 
     @cached_property
     def road(self) -> Road | None:
-        """The road on which is searched, where one is named."""
-        said = self.asked.place.road
-        return None if said is None else road_of(said, "road")
+        """The road of the search, if one is named."""
+        road = self.settings.place.road
+        return None if road is None else road_of(road, "road")
 
     @cached_property
     def named(self) -> dict[str, Explorable]:
-        """What is asked, by the names of formulas; what is asked twice is there once."""
+        """The explorations by the names of formulas; a repeated formula occurs once."""
         return {_name_of(k, x.search): x for k, x in enumerate(self.explorables, 1)}
 
     def batches(self, known: Answers) -> list["ExploreBatch"]:
         """A batch for each formula."""
         return [ExploreBatch(self, name) for name in self.named]
 
-    def asking(self, name: str) -> Asking[ExplorationResult]:
-        """Ask all of a formula. Raises ``InputError``, ``UsageError``."""
+    def steps_of(self, name: str) -> ClaimGenerator[ExplorationResult]:
+        """Yield the claims about a formula. Raises ``InputError``, ``UsageError``."""
         return explore(name, self.named[name], self.remembered)
 
     def label(self, name: str) -> str:
-        """Return what the claim of a name is about, in words: scenario and values."""
+        """Return the scenario and the values that the claim of a name is about, in words."""
         formula = max((x for x in self.named if x in name), key=len)
-        asked, rest = self.named[formula], name.partition(formula)[2].strip("-").split("-")
-        number = asked.search.scenario
+        explorable, rest = self.named[formula], name.partition(formula)[2].strip("-").split("-")
+        number = explorable.search.scenario
         words = [] if number is None else [f"scenario {number}"]
         match rest:
             case ["value", place, *_]:
-                point = asked.points[int(place) - 1]
-                words += [f"{knob.name}={x}" for knob, x in zip(asked.knobs, point, strict=True)]
+                point = explorable.points[int(place) - 1]
+                words += [
+                    f"{variable.name}={x}" for variable, x in zip(explorable.variables, point, strict=True)
+                ]
             case ["at" | "held", *value]:
-                words.append(f"{asked.knobs[0].name}={'-'.join(value).replace('_', '/')}")
+                words.append(f"{explorable.variables[0].name}={'-'.join(value).replace('_', '/')}")
             case ["least" | "greatest" as sense, *_]:
-                words += [f"{x.sense} {x.text}" for x in asked.measures if x.sense == sense]
+                words += [f"{x.sense} {x.text}" for x in explorable.measures if x.sense == sense]
         return ", ".join(words)
 
     def view(self, known: Answers) -> ExploreView:
-        """Return what is known of each formula."""
-        return ExploreView({name: seen(self.asking(name), known) for name in self.named})
+        """Return the results for each formula."""
+        return ExploreView({name: replay_steps(self.steps_of(name), known) for name in self.named})
 
-    def data(self, view: ExploreView, place: Place, seconds: float) -> ExploreData:
+    def data(self, view: ExploreView, place: EvidencePlace, seconds: float) -> ExploreData:
         """Return the view as ``--json`` prints it."""
-        varied = {x.name for x in self.asked.vary}
-        said: dict[str, Any] = self.basis.said()
-        said["parameters"] = {name: x for name, x in said["parameters"].items() if name not in varied}
+        varied = {x.name for x in self.settings.vary}
         explored = (exploration_data(self.named[name], x, place) for name, x in view.explored.items())
         return ExploreData(
             **heading_of(SCHEMA, self.basis),
-            **said,
+            **self.basis.common_data(varied),
             **ExploreData.of_road(self.road),
             seconds=seconds,
             explored=tuple(explored),
@@ -158,7 +158,7 @@ class ExploreBatch:
 
     def steps(self) -> Steps:
         """Yield each claim, and be sent its answer."""
-        yield from self.question.asking(self.name)
+        yield from self.question.steps_of(self.name)
 
 
 def _is_scenario(search: Search, number: int) -> bool:
@@ -166,7 +166,7 @@ def _is_scenario(search: Search, number: int) -> bool:
     home = search.specification
     if number not in numbers_of(home):
         return False
-    return applied(home, Scenario(number, home.set_name)).formula == search.query.formula
+    return apply_scenario(home, Scenario(number, home.set_name)).formula == search.query.formula
 
 
 def _name_of(number: int, search: Search) -> str:

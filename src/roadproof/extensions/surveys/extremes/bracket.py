@@ -1,11 +1,11 @@
-"""The bracket around an extreme: the best value that was reached, and the nearest that were not."""
+"""The bracket around an extreme: the best value reached, and the nearest values not reached."""
 
 from collections.abc import Mapping
 from fractions import Fraction
 from itertools import product
 from typing import TypeAlias, assert_never
 
-from roadproof.engines.encode.place import span
+from roadproof.engines.encode.place import road_edges
 from roadproof.engines.search.question import SearchProblem
 from roadproof.extensions.surveys.extremes.measure import between
 from roadproof.extensions.surveys.extremes.points import PointFinding
@@ -18,70 +18,72 @@ PATIENCE = 2  # doubts in a row before one is taken for the end
 
 
 class Bracket:
-    """The best value so far, and those that were not found: the nearest sure one, and doubts before it.
+    """The best value so far, the nearest ``excluded`` one, and ``undecided`` ones between.
 
-    A search that ends in doubt says little of the values beyond: a few of them are tried before the doubt
-    is taken for the end.
+    An undecided search says little about values beyond. So a few of them are tried before an undecided value
+    ends the bracket.
     """
 
     def __init__(self, sign: int, precision: Fraction, best: Fraction, end: Fraction | None) -> None:
         self.sign = sign
         self.precision = precision
         self.best = best
-        self.sure: PointFinding | None = None
-        self.doubts: list[PointFinding] = []
+        self.excluded: PointFinding | None = None
+        self.undecided: list[PointFinding] = []
         self.end = end
         self.leap = max(precision, Fraction(1))
         self.patience = PATIENCE
 
     @property
-    def missed(self) -> PointFinding | None:
-        """The nearest value that was not found."""
-        known = [*self.doubts, *([self.sure] if self.sure is not None else [])]
+    def outside(self) -> PointFinding | None:
+        """The nearest value that was not reached."""
+        known = [*self.undecided, *([self.excluded] if self.excluded is not None else [])]
         return min(known, key=lambda finding: self.distance(finding.at[0]), default=None)
 
     @property
     def narrow(self) -> bool:
-        return self.missed is not None and self.distance(self.missed.at[0]) <= self.precision
+        return self.outside is not None and self.distance(self.outside.at[0]) <= self.precision
 
     def distance(self, value: Fraction) -> Fraction:
-        """How far ``value`` is beyond the best one."""
+        """Return how far ``value`` is beyond the best one."""
         return (self.best - value) * self.sign
 
-    def reached(self, found: Fraction, value: Fraction) -> bool:
-        """Return whether a value that was found is as good as the one that was asked for."""
-        return (found - value) * self.sign <= 0
+    def reached(self, reached: Fraction, value: Fraction) -> bool:
+        """Return whether a reached value is as good as the one asked for."""
+        return (reached - value) * self.sign <= 0
 
-    def hold(self, found: Fraction) -> None:
-        self.best = found
+    def hold(self, value: Fraction) -> None:
+        self.best = value
         self.leap *= 2
         self.patience = PATIENCE
-        self.doubts = [x for x in self.doubts if self.distance(x.at[0]) > 0]
-        if self.sure is not None and self.distance(self.sure.at[0]) <= 0:
-            self.sure = None  # there was none on that grid, but there is one on a finer one
+        self.undecided = [x for x in self.undecided if self.distance(x.at[0]) > 0]
+        if self.excluded is not None and self.distance(self.excluded.at[0]) <= 0:
+            self.excluded = None  # there was none on that grid, but there is one on a finer one
 
-    def miss(self, missed: PointFinding) -> None:
-        if missed.verdict is Verdict.UNKNOWN or self.doubts:
+    def miss(self, finding: PointFinding) -> None:
+        if finding.verdict is Verdict.UNKNOWN or self.undecided:
             self.patience -= 1
-        if missed.verdict is Verdict.UNKNOWN:
-            self.doubts.append(missed)
-        elif self.sure is None or self.distance(missed.at[0]) < self.distance(self.sure.at[0]):
-            self.sure = missed
-            self.doubts = [x for x in self.doubts if self.distance(x.at[0]) < self.distance(missed.at[0])]
+        if finding.verdict is Verdict.UNKNOWN:
+            self.undecided.append(finding)
+        elif self.excluded is None or self.distance(finding.at[0]) < self.distance(self.excluded.at[0]):
+            self.excluded = finding
+            self.undecided = [
+                x for x in self.undecided if self.distance(x.at[0]) < self.distance(finding.at[0])
+            ]
 
     def next(self) -> Fraction:
-        """The next value to ask for."""
+        """Return the next value to ask for."""
         ahead = self.sign * self.precision
-        if self.end is not None and self.sure is None:
+        if self.end is not None and self.excluded is None:
             end, self.end = self.end, None
             return end if self.distance(end) > 0 else self.best - ahead
-        farthest = max([self.best, *(x.at[0] for x in self.doubts)], key=self.distance)
-        room = None if self.sure is None else abs(self.sure.at[0] - farthest)
-        if self.doubts and (self.patience <= 0 or (room is not None and room <= self.precision)):
-            assert self.missed is not None
-            return between(self.best, self.missed.at[0])
-        if self.sure is not None:
-            return between(farthest, self.sure.at[0])
+        farthest = max([self.best, *(x.at[0] for x in self.undecided)], key=self.distance)
+        room = None if self.excluded is None else abs(self.excluded.at[0] - farthest)
+        if self.undecided and (self.patience <= 0 or (room is not None and room <= self.precision)):
+            assert self.outside is not None
+            return between(self.best, self.outside.at[0])
+        if self.excluded is not None:
+            return between(farthest, self.excluded.at[0])
         leap = farthest - self.sign * self.leap
         return between(leap, leap - ahead)
 
@@ -93,12 +95,12 @@ Ranges: TypeAlias = Mapping[tuple[str, str], Range]
 
 
 def starting_ranges(question: SearchProblem) -> dict[tuple[str, str], Range]:
-    """What the signals of every vehicle can be at time 0, by vehicle and signal; sizes too.
+    """Return the ranges of signals and sizes at time 0, by vehicle and signal.
 
-    Places along the road are told from the front of the first vehicle, so for a term that names places
-    (``encode.along``) they are none.
+    Positions along the road are relative to the front of the first vehicle. So these ranges do not apply to a
+    term that names places (``encode.shift_invariance``).
     """
-    right, left = span(question.road)
+    right, left = road_edges(question.road)
     reach = question.assumptions.reach
     ranges: dict[tuple[str, str], Range] = {}
     for k, (name, vehicle) in enumerate(question.vehicles.items()):
@@ -112,7 +114,7 @@ def starting_ranges(question: SearchProblem) -> dict[tuple[str, str], Range]:
 
 
 def range_of(term: Term, ranges: Ranges) -> Range:
-    """A range that holds every value of ``term``; the narrowest where no signal occurs twice.
+    """Return a range that contains every value of ``term``; the narrowest if no signal occurs twice.
 
     ``term`` has no parameters. Raises ``ValueError`` for 1/x, and for a divisor that is no number.
     """
@@ -121,7 +123,7 @@ def range_of(term: Term, ranges: Ranges) -> Range:
             return value, value
         case t.Signal(name, vehicle) | t.Size(name, vehicle):
             return ranges[vehicle, name]
-        case t.Own() as own:
+        case t.CustomSignal() as own:
             if own.low is None or own.high is None:
                 raise ValueError("no finite value is known")
             return own.low, own.high

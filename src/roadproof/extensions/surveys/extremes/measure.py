@@ -1,15 +1,16 @@
-"""A number to be made as small or as great as possible on drives: a term at the start, or at some moment."""
+"""Measures of drives, whose least or greatest value is searched: a term at the start, or at a moment."""
 
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from roadproof.errors import UsageError
-from roadproof.library.compose import both, comparison, eventually
+from roadproof.extensions.surveys.composition import comparison
+from roadproof.library.compose import both, eventually
 from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.parse import parse_claim
-from roadproof.logic.show import declared
+from roadproof.logic.show import declarations_text
 from roadproof.logic.syntax import Binding, Expression
 from roadproof.logic.terms import Dimension, Inverse, Term, Varying, leaves
 
@@ -17,10 +18,10 @@ Sense: TypeAlias = Literal["least", "greatest"]
 
 
 @dataclass(frozen=True)
-class Measure:
-    """The ``sense`` value of ``term``, at time 0 or at some ``moment`` at which that holds.
+class DriveMeasure:
+    """The least or greatest value (``sense``) of ``term``, at time 0 or when the formula ``moment`` holds.
 
-    ``text`` and ``when`` are how a user wrote term and moment; ``written`` is the term as a tree. They are
+    ``text`` and ``when``: term and moment as the user wrote them; ``written``: the term as a tree. They are
     read with the definitions of ``home`` and the names in ``given``.
     """
 
@@ -36,11 +37,11 @@ class Measure:
 
     @property
     def sign(self) -> int:
-        """What turns a better value into a smaller one."""
+        """The factor that turns a better value into a smaller one."""
         return 1 if self.sense == "least" else -1
 
     def bound(self, value: Fraction | None) -> list[Query]:
-        """That the measure is ``value`` or better (None: that there is a moment for it), as parts."""
+        """Return the conditions that the measure is ``value`` or better (None: that its moment occurs)."""
         op: Literal["<=", ">="] = "<=" if self.sense == "least" else ">="
         here = (
             []
@@ -52,12 +53,12 @@ class Measure:
 
 def read_measure(
     specification: Specification, sense: Sense, text: str, when: str = "", given: tuple[Binding, ...] = ()
-) -> Measure:
-    """A measure from what the user wrote, in the names that a formula has in its ``given``.
+) -> DriveMeasure:
+    """Return a measure from the text of a user, in the names ``given`` of a formula.
 
-    Raises ``TextError``, and ``UsageError`` for what no drive changes.
+    Raises ``TextError``, and ``UsageError`` for a term that is the same on all drives.
     """
-    head = declared(given)
+    head = declarations_text(given)
     term, dimension = read_term(specification, head + text, f"--{sense}")
     if isinstance(term, Inverse):
         raise UsageError(f"--{sense} '{text}': 1/x may be infinite; ask for the other extreme of x")
@@ -65,13 +66,13 @@ def read_measure(
         raise UsageError(f"--{sense} '{text}': no drive changes this; name a signal, such as v_lon(SV)")
     moment = read_claim(specification, head + when, "--when") if when else None
     written = parse_claim(head + text).body
-    return Measure(sense, text, written, term, dimension, specification, when, moment, given)
+    return DriveMeasure(sense, text, written, term, dimension, specification, when, moment, given)
 
 
 def between(one: Fraction, other: Fraction, grains: tuple[Fraction, ...] = ()) -> Fraction:
-    """A plain number strictly between two: a multiple of the first grain that has one, near the middle.
+    """Return a short number strictly between two, near the middle.
 
-    Else the decimal with the fewest digits in the middle half.
+    It is a multiple of the first of ``grains`` that has one, or else the shortest decimal in the middle half.
 
     >>> str(between(Fraction(0), Fraction(3), (Fraction(3, 5),))), str(between(Fraction(1, 3), Fraction(1)))
     ('6/5', '7/10')

@@ -1,7 +1,7 @@
-"""Drives asked for at one point after the other, each point a claim; and what the answers show together.
+"""Searches for drives at one point after the other, each point a claim.
 
-A generator yields claims with their names, and is sent the answers. So the same lines list claims for whoever
-settles them, and read the answers for whoever looks at them.
+A generator yields claims with their names, and is sent the answers. So one function lists claims for the loop
+that decides them, and computes the view from known answers.
 """
 
 from collections.abc import Callable, Generator
@@ -10,12 +10,13 @@ from fractions import Fraction
 from typing import TypeAlias, TypeVar
 
 from roadproof.engines.search.known_drive import KnownDrive, is_same_motion
-from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.stages import finest, fit_grid, staged_claim, stand_ins, values_of
-from roadproof.evidence.answer import Answer
+from roadproof.engines.setting import Search
+from roadproof.evidence.answer import ClaimAnswer
+from roadproof.evidence.assuming import valid_under
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.claim import HELP, Claim, Exists, valid_under
+from roadproof.evidence.claim import HELP, Claim, Exists
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.extensions.surveys.staged import finest, fit_grid, staged_claim, stand_ins, values_of
 from roadproof.library.compose import negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import value_texts
@@ -23,22 +24,22 @@ from roadproof.library.specification import Query
 from roadproof.logic.formula import Not
 from roadproof.logic.parts import parts_of, texts_of
 from roadproof.logic.rewrite import is_cubic_state, parameters_of
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.reasons import NO_REASON, Reason, ReasonKind
 from roadproof.verdict import DriveVerdict, Verdict
 
 T = TypeVar("T")
 Point: TypeAlias = tuple[Fraction, ...]
 """A value for each variable, in order, in SI units."""
-Asking: TypeAlias = Generator[tuple[str, Claim], Answer, T]
+ClaimGenerator: TypeAlias = Generator[tuple[str, Claim], ClaimAnswer, T]
 """Yields claims with their names, is sent the answers, and returns what they show."""
 
 
 @dataclass(frozen=True)
 class PointFinding:
-    """What is known at one point; ``query`` is what the drive satisfies, or what has no drive.
+    """The finding at one point; ``query``: the formula that the drive satisfies, or that has no drive.
 
-    ``name`` and ``answer``: of the claim that shows it; None where a doubt has none. ``number`` tells drives
-    apart.
+    ``name`` and ``answer``: those of the claim that decides; None if undecided. ``number``: that of the
+    drive, equal for equal motions.
     """
 
     at: Point
@@ -46,12 +47,12 @@ class PointFinding:
     verdict: DriveVerdict
     reason: Reason = NO_REASON
     name: str = ""
-    answer: Answer | None = None
+    answer: ClaimAnswer | None = None
     number: int | None = None
 
     @property
-    def found(self) -> bool:
-        """Whether there is a drive."""
+    def has_drive(self) -> bool:
+        """Return whether there is a drive."""
         return self.verdict is Verdict.WITNESSED
 
     @property
@@ -61,26 +62,26 @@ class PointFinding:
 
     @property
     def certificate(self) -> Certificate | None:
-        """The proof that there is none, if one is known."""
+        """The proof that there is no drive, if one is known."""
         return None if self.answer is None else self.answer.certificate
 
     @property
     def assuming(self) -> tuple[str, ...]:
-        """The values of parameters with which it is proved that there is none; empty where for all."""
-        return () if self.certificate is None else self.certificate.assumed.said
+        """The values of parameters that the proof assumes; empty if it holds for all."""
+        return () if self.certificate is None else self.certificate.assumed.texts
 
 
 @dataclass
-class Remembered:
-    """What judging drives showed: it is the same each time that answers are looked through."""
+class JudgementCache:
+    """A cache of judgements of drives, which do not change."""
 
     values: dict[object, tuple[object, object]] = field(default_factory=dict)
 
-    def __reduce__(self) -> "tuple[type[Remembered], tuple[()]]":
-        return Remembered, ()  # other processes work it out again
+    def __reduce__(self) -> "tuple[type[JudgementCache], tuple[()]]":
+        return JudgementCache, ()  # other processes work it out again
 
     def of(self, key: object, drive: object, work_out: Callable[[], T]) -> T:
-        """Return what is worked out of a drive, once for each ``key`` and drive."""
+        """Return a value for a drive, which is computed once for each ``key`` and drive."""
         known = self.values.get(key)
         if known is None or known[0] is not drive:
             known = self.values[key] = (drive, work_out())
@@ -89,18 +90,18 @@ class Remembered:
 
 
 class Points:
-    """The claims of one formula at several points, and the drives that their answers have shown.
+    """The claims of one formula at several points, and the drives of their answers.
 
-    ``searches``: how many answers neither follow from an earlier drive nor are proofs.
+    ``searches``: the number of answers that are neither proofs nor follow from an earlier drive.
     """
 
-    def __init__(self, remembered: Remembered) -> None:
+    def __init__(self, remembered: JudgementCache) -> None:
         self.remembered = remembered
-        self.answers: dict[str, Answer] = {}
+        self.answers: dict[str, ClaimAnswer] = {}
         self.drives: list[KnownDrive] = []
         self.searches = 0
 
-    def ask(self, name: str, claim: Claim) -> Asking[Answer]:
+    def ask(self, name: str, claim: Claim) -> ClaimGenerator[ClaimAnswer]:
         """Ask a claim, once."""
         if name not in self.answers:
             answer = yield name, claim
@@ -108,22 +109,24 @@ class Points:
             known = len(self.drives)
             if answer.drive is not None:
                 self.number(answer.drive)
-            sought = isinstance(claim.mode, Exists) and claim.mode.by == "search"
-            self.searches += len(self.drives) > known or (sought and answer.drive is None)
+            is_search = isinstance(claim.mode, Exists) and claim.mode.by == "search"
+            self.searches += len(self.drives) > known or (is_search and answer.drive is None)
         return self.answers[name]
 
     def number(self, drive: JudgedDrive) -> int:
-        """Return the number of a drive, from 1: those with the same motions have the same."""
+        """Return the number of a drive, from 1; equal motions have equal numbers."""
         for k, known in enumerate(self.drives, 1):
             if is_same_motion(known.judged.file, drive.file):
                 return k
         self.drives.append(KnownDrive(drive))
         return len(self.drives)
 
-    def find(self, name: str, at: Point, search: Search, natural: bool = True) -> Asking[PointFinding]:
-        """Ask for a drive at a point; of some formulas for a proof where there is none.
+    def find(
+        self, name: str, at: Point, search: Search, natural: bool = True
+    ) -> ClaimGenerator[PointFinding]:
+        """Ask for a drive at a point; for formulas about a state, else for a proof that there is none.
 
-        ``natural``: natural drives come first, and not last. Raises ``UsageError``.
+        ``natural``: whether natural drives come first. Raises ``UsageError``.
         """
         fitting = fit_grid(search)
         if fitting is None:
@@ -133,20 +136,20 @@ class Points:
             claim = staged_claim(search, by="known")
         else:
             claim = staged_claim(fitting, natural)
-        sought = f"{HELP}{name}" if is_cubic_state(search.query.formula) else name
-        answer = yield from self.ask(sought, claim)
-        found = self.finding(sought, at, search, answer)
-        if fitting is None and not found.found:
-            found = replace(found, reason=Why.NO_COMMON_STEP(float(finest(search.setting))))
-        return found if found.found else (yield from self.never(name, at, search)) or found
+        claim_name = f"{HELP}{name}" if is_cubic_state(search.query.formula) else name
+        answer = yield from self.ask(claim_name, claim)
+        finding = self.finding(claim_name, at, search, answer)
+        if fitting is None and not finding.has_drive:
+            finding = replace(finding, reason=ReasonKind.NO_COMMON_STEP(float(finest(search.setting))))
+        return finding if finding.has_drive else (yield from self.never(name, at, search)) or finding
 
-    def again(self, name: str, at: Point, search: Search) -> Asking[PointFinding]:
-        """Ask whether a drive that is known serves a point."""
+    def again(self, name: str, at: Point, search: Search) -> ClaimGenerator[PointFinding]:
+        """Ask whether a known drive serves a point."""
         answer = yield from self.ask(name, staged_claim(search, by="known"))
         return self.finding(name, at, search, answer)
 
-    def finding(self, name: str, at: Point, search: Search, answer: Answer) -> PointFinding:
-        """Return what an answer shows of a point."""
+    def finding(self, name: str, at: Point, search: Search, answer: ClaimAnswer) -> PointFinding:
+        """Return the finding of an answer at a point."""
         number = None if answer.drive is None else self.number(answer.drive)
         verdict: DriveVerdict = Verdict.UNKNOWN
         match answer.verdict:
@@ -155,7 +158,7 @@ class Points:
         return PointFinding(at, search.query, verdict, answer.reason, name, answer, number)
 
     def has_drive(self, name: str, search: Search) -> bool:
-        """Return whether a drive that is known serves a point."""
+        """Return whether a known drive serves a point."""
         claim = staged_claim(search, by="known")
         return any(
             self.remembered.of(
@@ -166,11 +169,11 @@ class Points:
             for k, x in reversed([*enumerate(self.drives)])
         )
 
-    def never(self, name: str, at: Point, search: Search) -> Asking[PointFinding | None]:
-        """Ask for a proof that a formula holds in no state, with the parameters at the values of a search.
+    def never(self, name: str, at: Point, search: Search) -> ClaimGenerator[PointFinding | None]:
+        """Ask for a proof that a formula holds in no state, with the parameter values of a search.
 
-        It is for all states, wherever, however fast and how near vehicles are: it needs no limits. Formulas
-        about more than a state, and those that engines read, have none.
+        The proof is about all states and needs no limits. It exists only for formulas about one state that
+        the encoders do not read.
         """
         if not is_cubic_state(search.query.formula):
             return None
@@ -180,27 +183,29 @@ class Points:
         answer = yield from self.ask(name, claim)
         if answer.certificate is None:
             return None
-        return self._impossible(name, at, search, answer, Why.PROVED_STATES())
+        return self._impossible(name, at, search, answer, ReasonKind.PROVED_STATES())
 
-    def proved(self, name: str, at: Point, search: Search, of: str) -> Asking[PointFinding | None]:
-        """Ask for a proof that there is no drive, whatever the values of parameters are.
+    def proved(self, name: str, at: Point, search: Search, of: str) -> ClaimGenerator[PointFinding | None]:
+        """Ask for a proof that there is no drive, for all values of parameters.
 
-        ``of``: what it is proved for all of, in words.
+        ``of``: the quantity that the proof covers entirely, in words for the reason.
         """
         answer = yield from self.ask(f"{HELP}{name}", staged_claim(search, by="proof"))
         if answer.certificate is None:
             return None
-        return self._impossible(name, at, search, answer, Why.PROVED_CORE(of, " and ".join(core_of(answer))))
+        return self._impossible(
+            name, at, search, answer, ReasonKind.PROVED_CORE(of, " and ".join(core_of(answer)))
+        )
 
     def _impossible(
-        self, name: str, at: Point, search: Search, answer: Answer, reason: Reason
+        self, name: str, at: Point, search: Search, answer: ClaimAnswer, reason: Reason
     ) -> PointFinding:
-        asked = next(known for known, x in self.answers.items() if x is answer)
-        return PointFinding(at, search.query, Verdict.IMPOSSIBLE, reason, asked, answer)
+        claim_name = next(known for known, x in self.answers.items() if x is answer)
+        return PointFinding(at, search.query, Verdict.IMPOSSIBLE, reason, claim_name, answer)
 
 
-def core_of(answer: Answer) -> tuple[str, ...]:
-    """Return the parts that clash, of a claim that is proved to be impossible."""
+def core_of(answer: ClaimAnswer) -> tuple[str, ...]:
+    """Return the contradicting parts of a claim that is proved impossible."""
     proof = answer.certificate
     assert proof is not None
     denied = read_claim(answer.claim.home, proof.claim).formula

@@ -1,1 +1,1 @@
-"""Answers of surveys to look at."""
+"""Texts, tables and pictures of surveys."""

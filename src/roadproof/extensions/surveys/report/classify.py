@@ -1,4 +1,4 @@
-"""Classes of scenarios to look at: tables and a few lines, and a picture of which scenarios make them up."""
+"""Tables, a summary and a picture of classes of scenarios."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from roadproof.extensions.surveys.classify.data import ClassData
-from roadproof.extensions.surveys.classify.drives import Example
+from roadproof.extensions.surveys.classify.drives import ClassExample
 from roadproof.extensions.surveys.classify.question import ClassesView
 from roadproof.extensions.surveys.classify.text import HEADINGS
 from roadproof.extensions.surveys.classify.traffic_shares import Shares
 from roadproof.frontends.report.figures import count_axis, hide_frame, legend_beside, make_figure
 from roadproof.frontends.report.sheet import Bar, Column, Sheet, as_lines
-from roadproof.library.words import Called
+from roadproof.library.words import ScenarioWords
 from roadproof.verdict import Verdict
 
 _DOT, _NO_DOT, _BAR, _DOUBT = "#1f5fbf", "#dddddd", "#3f7d4e", "#b5473c"
@@ -21,7 +21,7 @@ MOST_TOLD = 20
 
 @dataclass
 class _Row:
-    """Classes taken together; ``sizes``: their numbers of vehicles."""
+    """A row of a table: several classes together; ``sizes``: their numbers of vehicles."""
 
     name: str
     happens: tuple[int, ...]
@@ -33,15 +33,15 @@ class _Row:
 
     @property
     def is_shown(self) -> bool:
-        """Whether there is a drive in each place."""
+        """Return whether there is a drive in each place."""
         return self.witnessed == self.count
 
     @property
     def drives(self) -> str:
         return f"{self.witnessed} of {self.count}"
 
-    def told(self, words: Called) -> str:
-        """What happens: of one scenario its title, if it has any, before its description."""
+    def title_in(self, words: ScenarioWords) -> str:
+        """Return the disturbance in words; for one scenario its title before its description."""
         *most, last = map(str, self.happens)
         if most:
             return f"{', '.join(most)} and {last} together"
@@ -49,13 +49,13 @@ class _Row:
         return ": ".join(dict.fromkeys(filter(None, (title, self.description))))
 
 
-def as_table(examples: Sequence[Example], shares: Shares | None, words: Called) -> str:
-    """A line for each thing that happens, its places added up; below it a line for each place."""
+def as_table(examples: Sequence[ClassExample], shares: Shares | None, words: ScenarioWords) -> str:
+    """Return a table with a line for each disturbance, and below a line for each place."""
     drives = Column[_Row]("drives", lambda x: x.drives)
     columns = (drives, *(() if shares is None else (_share_column(shares),)))
-    told = Column[_Row]("what happens", lambda x: x.told(words))
+    column = Column[_Row]("what happens", lambda x: x.title_in(words))
     happenings = _happenings(examples, shares)
-    lines = as_lines(Sheet((Column("class", lambda x: x.name), *columns, told), happenings))
+    lines = as_lines(Sheet((Column("class", lambda x: x.name), *columns, column), happenings))
     lines += [f"  {line}" for line in _not_alone(examples, words)]
     places = _merged(examples, shares, lambda x: (str(x.one.place), ()))
     if len(places) > 1:
@@ -64,7 +64,7 @@ def as_table(examples: Sequence[Example], shares: Shares | None, words: Called) 
 
 
 def sheet_of(classes: Sequence[ClassData]) -> Sheet[ClassData]:
-    """An entry for each class; the share is that of situations with as many vehicles."""
+    """Return a sheet with an entry for each class; shares are of situations with as many vehicles."""
     totals: Counter[int] = Counter()
     for x in classes:
         totals[len(x.vehicles)] += x.situations or 0
@@ -96,27 +96,27 @@ def sheet_of(classes: Sequence[ClassData]) -> Sheet[ClassData]:
     )
 
 
-def _not_alone(examples: Sequence[Example], words: Called) -> Iterator[str]:
-    """What those scenarios are called that have no row of their own, since they hold with others only."""
+def _not_alone(examples: Sequence[ClassExample], words: ScenarioWords) -> Iterator[str]:
+    """Yield the titles of scenarios without a row of their own, which hold only together with others."""
     happens = [x.one.what.holds for x in examples]
     alone = {numbers[0] for numbers in happens if len(numbers) == 1}
     others = sorted({number for numbers in happens for number in numbers} - alone)
     yield from (f"{number}: {words[number].title}" for number in others if words[number].title)
 
 
-def _happenings(examples: Sequence[Example], shares: Shares | None) -> list[_Row]:
-    """Classes of the same vehicles in which the same happens."""
+def _happenings(examples: Sequence[ClassExample], shares: Shares | None) -> list[_Row]:
+    """Return rows of classes with the same vehicles and disturbances."""
     return _merged(
         examples, shares, lambda x: ("_".join(["class", *map(str, x.one.what.holds)]), x.one.vehicles)
     )
 
 
 def _merged(
-    examples: Sequence[Example],
+    examples: Sequence[ClassExample],
     shares: Shares | None,
-    key_of: Callable[[Example], tuple[str, tuple[str, ...]]],
+    key_of: Callable[[ClassExample], tuple[str, tuple[str, ...]]],
 ) -> list[_Row]:
-    """Classes with the same key taken together, under the name that it begins with."""
+    """Return a row for all classes with the same key, under the name in the key."""
     rows: dict[tuple[str, tuple[str, ...]], _Row] = {}
     for x in examples:
         key = key_of(x)
@@ -129,7 +129,7 @@ def _merged(
 
 
 def _share_column(shares: Shares) -> Column[_Row]:
-    """How many situations, and of those with as many vehicles how much."""
+    """Return the column of situations: their number, and the share of those with as many vehicles."""
 
     def cell(row: _Row) -> str:
         whole = sum(shares.classified[size] for size in row.sizes)
@@ -139,19 +139,19 @@ def _share_column(shares: Shares) -> Column[_Row]:
     return Column("situations", cell)
 
 
-def summary(found: ClassesView, shares: Shares | None) -> Iterator[str]:
-    """What is proved, what was found, what is in doubt, and whether recordings agree."""
-    count = len(found.examples)
-    verdicts = Counter(x.verdict for x in found.examples)
-    told = ", ".join(f"{n} {v}" for v, n in verdicts.items())
-    yield f"{count} class{'es' * (count != 1)}: {told}" if told else "no classes"
-    yield from (f"  {Verdict.UNKNOWN}: {x.about}: {x.reason}" for x in found.doubts)
-    yield from (f"  {x.verdict}: {x.claim.query.text}: {x.reason}" for x in found.decisions if not x.holds)
+def summary(view: ClassesView, shares: Shares | None) -> Iterator[str]:
+    """Yield lines on proofs, drives, undecided parts, and agreement with recordings."""
+    count = len(view.examples)
+    verdicts = Counter(x.verdict for x in view.examples)
+    counts = ", ".join(f"{n} {v}" for v, n in verdicts.items())
+    yield f"{count} class{'es' * (count != 1)}: {counts}" if counts else "no classes"
+    yield from (f"  {Verdict.UNKNOWN}: {x.about}: {x.reason}" for x in view.doubts)
+    yield from (f"  {x.verdict}: {x.claim.query.text}: {x.reason}" for x in view.decisions if not x.holds)
     for kind, heading in HEADINGS.items():
-        those = Counter(x.verdict for x in found.decisions if x.claim.kind == kind)
+        those = Counter(x.verdict for x in view.decisions if x.claim.kind == kind)
         if those:
             yield f"{heading}: " + ", ".join(f"{n} {v}" for v, n in those.items())
-    yield from (f"  {x.verdict}: {x.one.name}: {x.reason}" for x in found.examples if x.reason)
+    yield from (f"  {x.verdict}: {x.one.name}: {x.reason}" for x in view.examples if x.reason)
     if shares is not None:
         yield from _of_shares(shares)
 
@@ -166,17 +166,19 @@ def _of_shares(shares: Shares) -> Iterator[str]:
     yield from shares.left_out
     number = sum(shares.classified.values())
     if shares.broken:
-        told = f"{len(shares.broken)} of {number} situations are not in exactly their own class"
-        yield f"{Verdict.CROSSCHECK_FAILED}: {told}"
+        message = f"{len(shares.broken)} of {number} situations are not in exactly their own class"
+        yield f"{Verdict.CROSSCHECK_FAILED}: {message}"
         yield from (f"  {line}" for line in shares.broken[:MOST_TOLD])
     else:
         yield f"{number} situations with a scenario, each in exactly one class, which names its scenarios"
 
 
-def draw_classes(examples: Sequence[Example], shares: Shares | None, title: str, words: Called) -> Any:
-    """Bars of how often each class occurs, over dots for the scenarios in it.
+def draw_classes(
+    examples: Sequence[ClassExample], shares: Shares | None, title: str, words: ScenarioWords
+) -> Any:
+    """Draw bars for the frequency of each class, above dots for the scenarios in it.
 
-    Places are added up: a column is something that happens, a row a scenario but for its road sector.
+    Places are added up: a column is a choice of disturbances, and a row is a disturbance.
     """
     columns = _happenings(examples, shares)
     numbers = sorted({number for one in columns for number in one.happens})

@@ -1,25 +1,26 @@
-"""Which disturbances a set misses, in words: its classes of gaps as a table; and a picture for each gap."""
+"""A table of the classes of gaps of a set, a summary, and a picture for each gap."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from roadproof.extensions.surveys.coverage import kept
-from roadproof.extensions.surveys.coverage.answers import ClassAnswer, Gap, GapTraffic, Need, Survey
+from roadproof.extensions.surveys.coverage import schema
+from roadproof.extensions.surveys.coverage.answers import ClassAnswer, Gap, GapSurvey, GapTraffic, Need
+from roadproof.extensions.traffic.scenario_parts import danger_comes
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Column, Sheet, as_outline
-from roadproof.library.scenarios import PAIR, Scenario, applied, danger_comes
+from roadproof.library.scenarios import PAIR, Scenario, apply_scenario
 from roadproof.library.specification import Library
-from roadproof.library.words import Called, Words, words_of
-from roadproof.runtime.files import write_whole
+from roadproof.library.words import ScenarioWords, Words, words_of
+from roadproof.runtime.files import write_atomic
 from roadproof.verdict import Verdict
 
 
-def as_text(surveyed: Survey, index: kept.CoverageData, name: str, words: Called) -> str:
-    """All that is known of the set ``name``."""
+def as_text(surveyed: GapSurvey, index: schema.CoverageData, name: str, words: ScenarioWords) -> str:
+    """Return the answers about the set ``name`` as text."""
     lines: list[str] = []
     if index.classes:
         sheet = sheet_of(index, {number: x.name for number, x in words.items()})
@@ -49,34 +50,34 @@ def _in_traffic(traffic: GapTraffic) -> list[str]:
     return [*lines, *traffic.left_out]
 
 
-def _place(said: kept.CountedClass, names: Mapping[int, str]) -> str:
-    """The line above the classes of a scenario, and above the one of none."""
-    if said.scenario is None:
+def _place(entry: schema.CountedClass, names: Mapping[int, str]) -> str:
+    """Return the heading of the classes of a scenario, or of the class without a condition to blame."""
+    if entry.scenario is None:
         return "no single condition is to blame: in every scenario two or more are false"
-    return "" if said.condition else str(Words(said.scenario, names.get(said.scenario, "")))
+    return "" if entry.condition else str(Words(entry.scenario, names.get(entry.scenario, "")))
 
 
-def _component(said: kept.CountedClass) -> str:
-    """The line above the classes of a component."""
-    return "" if said.condition or said.scenario is None else f"{said.component}: {said.description}"
+def _component(entry: schema.CountedClass) -> str:
+    """Return the heading of the classes of a component."""
+    return "" if entry.condition or entry.scenario is None else f"{entry.component}: {entry.description}"
 
 
-def _evidence(said: kept.CountedClass, gaps: Mapping[int, kept.NumberedGap]) -> str:
-    told = [f"drive {number} ({_catching(gaps[number])})" for number in said.gaps]
-    told += [said.reason] if said.reason else []
-    told += [f"{said.in_traffic} in traffic"] if said.in_traffic else []
-    none = " or ".join(said.none_for)
-    told += [f"no drive found that {none} is first to catch"] if none else []
-    return "; ".join(told)
+def _evidence(entry: schema.CountedClass, gaps: Mapping[int, schema.NumberedGap]) -> str:
+    parts = [f"drive {number} ({_catching(gaps[number])})" for number in entry.gaps]
+    parts += [entry.reason] if entry.reason else []
+    parts += [f"{entry.in_traffic} in traffic"] if entry.in_traffic else []
+    none = " or ".join(entry.none_for)
+    parts += [f"no drive found that {none} is first to catch"] if none else []
+    return "; ".join(parts)
 
 
-def _catching(gap: kept.NumberedGap) -> str:
+def _catching(gap: schema.NumberedGap) -> str:
     choices = " or ".join(" with ".join(names) for names in gap.caught_by)
     return f"{gap.first}: {choices}" if gap.first else "caught by no set"
 
 
 def summary(classes: Sequence[ClassAnswer]) -> Iterator[str]:
-    """How many classes have which answer, and which wider set catches drives of how many."""
+    """Yield lines that count classes by answer, and by the wider set that catches their drives."""
     counts = {verdict: sum(x.verdict is verdict for x in classes) for verdict in Verdict}
     yield (
         f"of {len(classes)} classes {counts[Verdict.WITNESSED]} have a judged drive, "
@@ -88,8 +89,8 @@ def summary(classes: Sequence[ClassAnswer]) -> Iterator[str]:
         yield f"  {who} a drive of {has} classes"
 
 
-def sheet_of(index: kept.CoverageData, names: Mapping[int, str]) -> Sheet[kept.CountedClass]:
-    """An entry for each class of gaps; ``names``: what scenarios are called."""
+def sheet_of(index: schema.CoverageData, names: Mapping[int, str]) -> Sheet[schema.CountedClass]:
+    """Return a sheet with an entry for each class of gaps; ``names``: those of scenarios."""
     gaps = {gap.number: gap for gap in index.gaps}
     return Sheet(
         (
@@ -117,8 +118,8 @@ def sheet_of(index: kept.CoverageData, names: Mapping[int, str]) -> Sheet[kept.C
     )
 
 
-def sheet_of_claims(index: kept.CoverageData) -> Sheet[kept.Claim]:
-    """An entry for each claim that there is no gap."""
+def sheet_of_claims(index: schema.CoverageData) -> Sheet[schema.CoverageClaimData]:
+    """Return a sheet with an entry for each claim of coverage."""
     return Sheet(
         (
             Column("claim", lambda x: x.claim),
@@ -130,24 +131,24 @@ def sheet_of_claims(index: kept.CoverageData) -> Sheet[kept.Claim]:
 
 
 def draw_gap(answer: ClassAnswer, gap: Gap, library: Library) -> Any:
-    """The picture of a gap, with when each part of the missed scenario is true."""
+    """Draw a gap, with the times at which each part of the missed scenario is true."""
     file, part = gap.drive.file, answer.part
     specification = library.select(file.set_name, file.options)
     if part is None:
-        missed, title = danger_comes(specification, *PAIR), "no single condition is to blame"
+        query, title = danger_comes(specification, *PAIR), "no single condition is to blame"
     else:
-        missed = applied(specification, Scenario(part.scenario, file.set_name))
+        query = apply_scenario(specification, Scenario(part.scenario, file.set_name))
         title = f"{words_of(specification, part.scenario)}\nbut for {part.component} ({part.description})"
         title += f": {part.condition}" if part.condition else ""
     title = f"Danger that {file.set_name} misses; {title}"
-    return draw_drive(replace(file, formula=missed.text), library, title)
+    return draw_drive(replace(file, formula=query.text), library, title)
 
 
 def draw_beside(library: Library, job: tuple[ClassAnswer, Gap, Path]) -> None:
-    """Write the picture of a gap beside its file, unless there is one of that very file."""
+    """Write the picture of a gap beside its file, unless there is a current one."""
     answer, gap, path = job
     picture = path.with_suffix(".png")
     if picture.exists() and picture.stat().st_mtime_ns >= path.stat().st_mtime_ns:
         return
     for kind, content in as_bytes(draw_gap(answer, gap, library)).items():
-        write_whole(path.with_suffix(f".{kind}"), content)
+        write_atomic(path.with_suffix(f".{kind}"), content)

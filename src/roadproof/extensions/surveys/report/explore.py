@@ -1,4 +1,4 @@
-"""An exploration to look at: a strip or a map as text, the ends of what was found, and pictures."""
+"""Texts, a table and pictures of an exploration: strip or map, boundaries and extremes."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -7,14 +7,16 @@ from itertools import pairwise
 from textwrap import wrap
 from typing import Any, TypeAlias
 
-from roadproof.extensions.surveys.explore.asking import Explorable, Variable
-from roadproof.extensions.surveys.explore.values import Boundary, ExplorationResult
+from roadproof.extensions.surveys.explore.explorable import Explorable, SweepVariable
+from roadproof.extensions.surveys.explore.values import ExplorationResult, SweepBoundary
 from roadproof.extensions.surveys.extremes.extreme import Extreme
 from roadproof.extensions.surveys.extremes.points import PointFinding
+from roadproof.extensions.surveys.report.cells import draw_cell, name_cells
+from roadproof.extensions.surveys.report.overlap_picture import COLOURS
 from roadproof.frontends.report.drive import draw_drive
-from roadproof.frontends.report.figures import draw_cell, legend_beside, make_figure, name_cells
+from roadproof.frontends.report.figures import legend_beside, make_figure
 from roadproof.frontends.report.numbers import took
-from roadproof.frontends.report.overlap import COLOURS, SIGNS
+from roadproof.frontends.report.overlap import SIGNS
 from roadproof.frontends.report.sheet import Cell, Column, Sheet
 from roadproof.library.words import words_of
 from roadproof.verdict import Verdict
@@ -23,7 +25,7 @@ from roadproof.world.units import unit_text
 MOST_NOTES = 2  # for one verdict on a map or strip; JSON has them all
 # Reasons, each with its number.
 Notes: TypeAlias = dict[str, int]
-_MEANING = {
+_MEANING: Mapping[Verdict, str] = {  # partial: a search has no other verdicts
     Verdict.WITNESSED: "a drive, judged at this value",
     Verdict.IMPOSSIBLE: "no drive exists: proved for all values",
     Verdict.NONE_WITHIN: "no drive within the printed limits",
@@ -38,20 +40,22 @@ def _meaning(verdict: Verdict, findings: Sequence[PointFinding]) -> str:
     return _THERE if there else _MEANING[verdict]
 
 
-def as_text(asked: Explorable, explored: ExplorationResult, seconds: float | None = 0.0) -> str:
-    """One explored formula for the terminal: its map, the ends, the extremes; reasons as notes below.
+def as_text(explorable: Explorable, explored: ExplorationResult, seconds: float | None = 0.0) -> str:
+    """Return one explored formula as text: its map, boundaries and extremes, with reasons as notes.
 
-    ``seconds``: how long it took.
+    ``seconds``: the time that it took.
     """
     notes: Notes = {}
-    lines = [_title(asked)]
-    if asked.knobs:
-        lines += _strip(asked, explored) if len(asked.knobs) == 1 else _map(asked, explored)
+    lines = [_title(explorable)]
+    if explorable.variables:
+        lines += (
+            _strip(explorable, explored) if len(explorable.variables) == 1 else _map(explorable, explored)
+        )
         lines += _legend(explored.findings, notes)
-    if len(asked.knobs) == 1:
-        lines += _ends(asked.knobs[0], explored, notes)
+    if len(explorable.variables) == 1:
+        lines += _ends(explorable.variables[0], explored, notes)
     for extreme in explored.extremes:
-        lines += _extreme(asked, extreme, notes)
+        lines += _extreme(explorable, extreme, notes)
     for reason, number in notes.items():
         lines += wrap(reason, 108, initial_indent=f"  [{number}] ", subsequent_indent="      ")
     counts = [f"{explored.searches} searches"]
@@ -60,8 +64,8 @@ def as_text(asked: Explorable, explored: ExplorationResult, seconds: float | Non
     return "\n".join([*lines, f"  {', '.join(counts)}{took(seconds)}"])
 
 
-def _title(asked: Explorable) -> str:
-    search = asked.search
+def _title(explorable: Explorable) -> str:
+    search = explorable.search
     name = search.query.text
     if search.scenario is not None:
         name = str(words_of(search.specification, search.scenario))
@@ -69,7 +73,7 @@ def _title(asked: Explorable) -> str:
 
 
 def _note(finding: PointFinding, notes: Notes) -> str:
-    """The verdict with the number of the note that says why."""
+    """Return the verdict with the number of the note that explains it."""
     return f"{finding.verdict} {_number(finding, notes)}"
 
 
@@ -77,16 +81,16 @@ def _number(finding: PointFinding, notes: Notes) -> str:
     return f"[{notes.setdefault(finding.reason, len(notes) + 1)}]"
 
 
-def _strip(asked: Explorable, explored: ExplorationResult) -> list[str]:
-    [knob] = asked.knobs
+def _strip(explorable: Explorable, explored: ExplorationResult) -> list[str]:
+    [variable] = explorable.variables
     signs = "".join(SIGNS[x.verdict] for x in explored.findings)
-    return [f"  {knob.name}  {show(knob.low)} {signs} {show(knob.high)} {_unit(knob.unit)}"]
+    return [f"  {variable.name}  {show(variable.low)} {signs} {show(variable.high)} {_unit(variable.unit)}"]
 
 
-def _map(asked: Explorable, explored: ExplorationResult) -> list[str]:
-    """Rows are values of the second knob, the greatest on top; columns those of the first."""
-    across, up = asked.knobs
-    columns, rows = (knob.values(asked.steps) for knob in asked.knobs)
+def _map(explorable: Explorable, explored: ExplorationResult) -> list[str]:
+    """Return the map as text: rows are values of the second variable, columns those of the first."""
+    across, up = explorable.variables
+    columns, rows = (variable.values(explorable.steps) for variable in explorable.variables)
     signs = {x.at: SIGNS[x.verdict] for x in explored.findings}
     width = max(len(show(row)) for row in rows)
     lines = [f"  {up.name} ({_unit(up.unit)})"]
@@ -112,51 +116,51 @@ def _legend(findings: Sequence[PointFinding], notes: Notes) -> list[str]:
     return lines
 
 
-def _ends(knob: Variable, explored: ExplorationResult, notes: Notes) -> list[str]:
-    """The least and the greatest value with a drive, and what is beyond; then gaps between."""
-    held = [x.at[0] for x in explored.findings if x.found]
-    held += [x.held.at[0] for x in explored.boundaries]
-    if not held:
+def _ends(variable: SweepVariable, explored: ExplorationResult, notes: Notes) -> list[str]:
+    """Return lines on the least and greatest value with a drive, on values beyond, and on gaps between."""
+    reached = [x.at[0] for x in explored.findings if x.has_drive]
+    reached += [x.inside.at[0] for x in explored.boundaries]
+    if not reached:
         return []
-    places = sorted(set(held))
+    places = sorted(set(reached))
     lines: list[str] = []
-    for word, place, end in (("least", places[0], knob.low), ("greatest", places[-1], knob.high)):
-        line = f"  {word} {knob.name} with a drive: {_value(place, knob.unit)}"
+    for word, place, end in (("least", places[0], variable.low), ("greatest", places[-1], variable.high)):
+        line = f"  {word} {variable.name} with a drive: {_value(place, variable.unit)}"
         if place == end:
             lines.append(f"{line}, the end of the range")
         else:
-            boundary = next(x for x in explored.boundaries if x.held.at[0] == place)
-            lines.append(f"{line}; {_beyond(boundary.missed, boundary.surely, knob.unit, notes)}")
+            boundary = next(x for x in explored.boundaries if x.inside.at[0] == place)
+            lines.append(f"{line}; {_beyond(boundary.outside, boundary.excluded, variable.unit, notes)}")
     for boundary in explored.boundaries:
-        if places[0] < boundary.missed.at[0] < places[-1]:
-            beside = _value(boundary.held.at[0], knob.unit)
-            beyond = _beyond(boundary.missed, boundary.surely, knob.unit, notes)
+        if places[0] < boundary.outside.at[0] < places[-1]:
+            beside = _value(boundary.inside.at[0], variable.unit)
+            beyond = _beyond(boundary.outside, boundary.excluded, variable.unit, notes)
             lines.append(f"  a gap beside {beside}; {beyond}")
     return lines
 
 
-def _beyond(missed: PointFinding, surely: PointFinding | None, unit: str, notes: Notes) -> str:
-    """What is known of the other side of a bracket."""
-    text = f"at {_value(missed.at[0], unit)} {_note(missed, notes)}"
-    if surely is not None and surely.at != missed.at:
-        text += f", at {_value(surely.at[0], unit)} {_note(surely, notes)}"
+def _beyond(outside: PointFinding, excluded: PointFinding | None, unit: str, notes: Notes) -> str:
+    """Return the text about the other side of a bracket."""
+    text = f"at {_value(outside.at[0], unit)} {_note(outside, notes)}"
+    if excluded is not None and excluded.at != outside.at:
+        text += f", at {_value(excluded.at[0], unit)} {_note(excluded, notes)}"
     return text
 
 
-def _extreme(asked: Explorable, extreme: Extreme, notes: Notes) -> list[str]:
-    """The best value reached, and what is beyond."""
+def _extreme(explorable: Explorable, extreme: Extreme, notes: Notes) -> list[str]:
+    """Return the line on an extreme: the best value reached, and the values beyond."""
     measure, unit = extreme.measure, unit_text(extreme.measure.dimension)
     when = f"when {measure.when}" if measure.when else "at the start"
     head = f"  {measure.sense} {measure.text} {when}"
     if extreme.point:
-        head += f", {asked.knobs[0].name} = {show(extreme.point[0])}"
-    best, missed = extreme.best, extreme.missed
+        head += f", {explorable.variables[0].name} = {show(extreme.point[0])}"
+    best, outside = extreme.best, extreme.outside
     if best is None:
-        return [f"{head}: no drive" + ("" if missed is None else f": {_note(missed, notes)}")]
+        return [f"{head}: no drive" + ("" if outside is None else f": {_note(outside, notes)}")]
     if extreme.endless:
         return [f"{head}: no end; the judged drive goes past {_value(best.at[0], unit)}"]
     line = f"{head}: {_value(best.at[0], unit)} on a judged drive"
-    return [line if missed is None else f"{line}; {_beyond(missed, extreme.surely, unit, notes)}"]
+    return [line if outside is None else f"{line}; {_beyond(outside, extreme.excluded, unit, notes)}"]
 
 
 Entry: TypeAlias = tuple[str, str, PointFinding, tuple[str, ...]]
@@ -164,22 +168,22 @@ Entry: TypeAlias = tuple[str, str, PointFinding, tuple[str, ...]]
 
 
 def entries_of(named: Mapping[str, Explorable], explored: Mapping[str, ExplorationResult]) -> Iterator[Entry]:
-    """Each value, and both sides of each boundary and extreme."""
-    for name, found in explored.items():
-        knobs = tuple(knob.name for knob in named[name].knobs)
-        yield from ((name, "value", x, knobs) for x in found.findings)
-        for boundary in found.boundaries:
-            yield name, "boundary, held", boundary.held, knobs
-            yield name, "boundary, missed", boundary.missed, knobs
-        for extreme in found.extremes:
+    """Yield an entry for each value, and for both sides of each boundary and extreme."""
+    for name, result in explored.items():
+        variables = tuple(variable.name for variable in named[name].variables)
+        yield from ((name, "value", x, variables) for x in result.findings)
+        for boundary in result.boundaries:
+            yield name, "boundary, held", boundary.inside, variables
+            yield name, "boundary, missed", boundary.outside, variables
+        for extreme in result.extremes:
             sense = f"{extreme.measure.sense} {extreme.measure.text}"
-            for side, x in (("best", extreme.best), ("missed", extreme.missed)):
+            for side, x in (("best", extreme.best), ("missed", extreme.outside)):
                 if x is not None:
                     yield name, f"{sense}, {side}", x, tuple(f"at {k}" for k, _ in enumerate(x.at, 1))
 
 
 def sheet_of(entries: Sequence[Entry]) -> Sheet[Entry]:
-    """An entry for each value, and for both sides of each boundary and extreme; values in SI units."""
+    """Return a sheet with an entry for each value, boundary and extreme, in SI units."""
     names = dict.fromkeys(name for *_, at in entries for name in at)
     values: tuple[Column[Entry], ...] = tuple(Column(name, partial(_value_of, name)) for name in names)
     return Sheet(
@@ -198,31 +202,31 @@ def _value_of(name: str, entry: Entry) -> Cell:
     return dict(zip(entry[3], entry[2].at, strict=True)).get(name)
 
 
-def draw_all(name: str, asked: Explorable, explored: ExplorationResult) -> Iterator[tuple[str, Any]]:
-    """Pictures of an exploration, and of the drives at its boundaries and extremes, with names of files."""
+def draw_all(name: str, explorable: Explorable, explored: ExplorationResult) -> Iterator[tuple[str, Any]]:
+    """Yield pictures of an exploration, and of drives at boundaries and extremes, with file names."""
     if explored.findings:
-        yield name, draw_exploration(asked, explored)
+        yield name, draw_exploration(explorable, explored)
     for file, finding in _ends_of(name, explored):
         if finding.drive is not None:
-            yield file, draw_drive(finding.drive.file, asked.search.specification.library)
+            yield file, draw_drive(finding.drive.file, explorable.search.specification.library)
 
 
 def _ends_of(name: str, explored: ExplorationResult) -> Iterator[tuple[str, PointFinding]]:
-    """What was found at boundaries and as extremes, each with the name of its picture."""
+    """Yield the findings at boundaries and extremes, each with the name of its picture."""
     for k, boundary in enumerate(explored.boundaries, 1):
-        yield f"{name}-boundary-{k}-held", boundary.held
+        yield f"{name}-boundary-{k}-held", boundary.inside
     for k, x in enumerate(explored.extremes, 1):
         if x.best is not None:
             yield f"{name}-{x.measure.sense}-{k}-best", x.best
 
 
-def draw_exploration(asked: Explorable, explored: ExplorationResult) -> Any:
-    """The strip or map of an exploration, measures over the strip."""
-    return (_draw_strip if len(asked.knobs) == 1 else _draw_map)(asked, explored)
+def draw_exploration(explorable: Explorable, explored: ExplorationResult) -> Any:
+    """Draw the strip or map of an exploration, with measures above the strip."""
+    return (_draw_strip if len(explorable.variables) == 1 else _draw_map)(explorable, explored)
 
 
-def _draw_strip(asked: Explorable, explored: ExplorationResult) -> Any:
-    [knob] = asked.knobs
+def _draw_strip(explorable: Explorable, explored: ExplorationResult) -> Any:
+    [variable] = explorable.variables
     measured = [x for x in explored.extremes if x.best is not None and x.point]
     figure, made = make_figure([2.6, 0.7, 0.7] if measured else [0.7, 0.7], width=8.0)
     *above, axes, below = made
@@ -232,32 +236,32 @@ def _draw_strip(asked: Explorable, explored: ExplorationResult) -> Any:
         axes.fill((low, high, high, low), (0, 0, 1, 1), color=COLOURS[x.verdict], ec="white", lw=0.8)
     axes.plot([float(x) for x in places], [0.08] * len(places), color="#333333", marker="|", ms=6, lw=0)
     for boundary in explored.boundaries:
-        held, missed = float(boundary.held.at[0]), float(boundary.missed.at[0])
-        axes.plot((held, held), (0, 1), color="#222222", lw=1.4)
-        axes.plot((missed, missed), (0, 1), color="#222222", ls=":", lw=1.4)
-        axes.text(held, 1.05, f"{held:g}", fontsize=7, ha="center")
+        inside, outside = float(boundary.inside.at[0]), float(boundary.outside.at[0])
+        axes.plot((inside, inside), (0, 1), color="#222222", lw=1.4)
+        axes.plot((outside, outside), (0, 1), color="#222222", ls=":", lw=1.4)
+        axes.text(inside, 1.05, f"{inside:g}", fontsize=7, ha="center")
     axes.set_yticks([])
     axes.set_ylim(0, 1)
-    axes.set_xlabel(f"{knob.name}, {_unit(knob.unit)}", fontsize=8)
+    axes.set_xlabel(f"{variable.name}, {_unit(variable.unit)}", fontsize=8)
     for one in (*above, axes):
         one.set_xlim(float(places[0]), float(places[-1]))
         one.tick_params(labelsize=7)
     if measured:
         _draw_measures(above[0], measured)
-    _finish(figure, below, asked, explored)
+    _finish(figure, below, explorable, explored)
     return figure
 
 
-def _edges(places: Sequence[Fraction], boundaries: Sequence[Boundary]) -> Iterator[Fraction]:
-    """Where one colour ends: inside the bracket of a boundary, else halfway between two values."""
-    brackets = [(x.held.at[0], x.missed.at[0]) for x in boundaries]
+def _edges(places: Sequence[Fraction], boundaries: Sequence[SweepBoundary]) -> Iterator[Fraction]:
+    """Yield the ends of colours: inside the bracket of a boundary, or halfway between two values."""
+    brackets = [(x.inside.at[0], x.outside.at[0]) for x in boundaries]
     for low, high in pairwise(places):
         here = [pair for pair in brackets if all(low <= end <= high for end in pair)]
         yield sum(here[0] if here else (low, high), Fraction(0)) / 2
 
 
 def _draw_measures(axes: Any, measured: Sequence[Extreme]) -> None:
-    """Each measure over the knob: what judged drives reach, and the nearest value that none was found for."""
+    """Draw each measure over the variable: values of judged drives, and the nearest values without one."""
     for sense, colour in (("least", "#1f5fbf"), ("greatest", "#c8641e")):
         here = [x for x in measured if x.measure.sense == sense and not x.endless]
         if not here:
@@ -271,46 +275,46 @@ def _draw_measures(axes: Any, measured: Sequence[Extreme]) -> None:
             lw=1,
             label=f"{sense}, on judged drives",
         )
-        beyond = [(float(x.point[0]), float(x.missed.at[0])) for x in here if x.missed is not None]
+        beyond = [(float(x.point[0]), float(x.outside.at[0])) for x in here if x.outside is not None]
         axes.plot(*zip(*beyond, strict=True), color=colour, marker="x", ms=4, lw=0, label="not found")
     measure = measured[0].measure
     axes.set_ylabel(f"{measure.text}, {unit_text(measure.dimension)}", fontsize=7)
     legend_beside(axes)
 
 
-def _draw_map(asked: Explorable, explored: ExplorationResult) -> Any:
-    across, up = asked.knobs
-    columns, rows = (knob.values(asked.steps) for knob in asked.knobs)
-    found = {x.at: x for x in explored.findings}
+def _draw_map(explorable: Explorable, explored: ExplorationResult) -> Any:
+    across, up = explorable.variables
+    columns, rows = (variable.values(explorable.steps) for variable in explorable.variables)
+    findings = {x.at: x for x in explored.findings}
     width = max(5.0, 0.42 * len(columns) + 2.5)
     figure, [axes, below] = make_figure([0.42 * len(rows) + 1.0, 0.7], width)
     for y, row in enumerate(rows):
         for x, column in enumerate(columns):
-            cell = found[column, row]
+            cell = findings[column, row]
             draw_cell(axes, x, y, COLOURS[cell.verdict], cell.number, "white")
-            if x and cell.found != found[columns[x - 1], row].found:
+            if x and cell.has_drive != findings[columns[x - 1], row].has_drive:
                 axes.plot((x, x), (y, y + 1), color="#222222", lw=1.6)
-            if y and cell.found != found[column, rows[y - 1]].found:
+            if y and cell.has_drive != findings[column, rows[y - 1]].has_drive:
                 axes.plot((x, x + 1), (y, y), color="#222222", lw=1.6)
     axes.set_xlim(0, len(columns))
     axes.set_ylim(0, len(rows))
     name_cells(axes, [*map(show, columns)], [*map(show, rows)], 7)
     axes.set_xlabel(f"{across.name}, {_unit(across.unit)}; numbers in cells tell drives apart", fontsize=8)
     axes.set_ylabel(f"{up.name}, {_unit(up.unit)}", fontsize=8)
-    _finish(figure, below, asked, explored)
+    _finish(figure, below, explorable, explored)
     return figure
 
 
-def _finish(figure: Any, below: Any, asked: Explorable, explored: ExplorationResult) -> None:
-    """Title, and what colours mean."""
+def _finish(figure: Any, below: Any, explorable: Explorable, explored: ExplorationResult) -> None:
+    """Add the title and the meaning of colours."""
     present = {x.verdict for x in explored.findings}
     for verdict in (v for v in SIGNS if v in present):
         below.fill([], [], color=COLOURS[verdict], label=f"{verdict}: {_meaning(verdict, explored.findings)}")
-    if len({x.found for x in explored.findings}) > 1:
+    if len({x.has_drive for x in explored.findings}) > 1:
         below.plot([], [], color="#222222", lw=1.6, label="between values with and without a drive")
     below.legend(fontsize=7, loc="upper left", frameon=False)
     below.axis("off")
-    figure.suptitle("\n".join(wrap(_title(asked), 80)), fontsize=9)
+    figure.suptitle("\n".join(wrap(_title(explorable), 80)), fontsize=9)
 
 
 def _value(value: Fraction, unit: str) -> str:
@@ -322,5 +326,5 @@ def _unit(unit: str) -> str:
 
 
 def show(value: Fraction) -> str:
-    """A value in decimals, to six digits."""
+    """Return a value in decimals, to six digits."""
     return f"{float(value):.6g}"

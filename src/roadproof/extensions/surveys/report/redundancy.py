@@ -1,24 +1,24 @@
-"""Which parts of scenarios are redundant, in words and as a sheet."""
+"""A text and a table of redundant parts of scenarios."""
 
 from collections.abc import Mapping, Sequence
 
-from roadproof.extensions.surveys.redundancy import ChangeFinding, FindingData
+from roadproof.extensions.surveys.redundancy import ChangeFinding, ChangeFindingData
 from roadproof.frontends.report.numbers import took
 from roadproof.frontends.report.sheet import Column, Sheet, Trail
-from roadproof.library.words import Called, legend
+from roadproof.library.words import ScenarioWords, legend
 from roadproof.verdict import Verdict
 
 
-def as_text(findings: Mapping[int, Sequence[ChangeFinding]], seconds: float, words: Called) -> str:
-    """What is redundant and what is in doubt, by scenario; how the others were told apart, in numbers."""
+def as_text(findings: Mapping[int, Sequence[ChangeFinding]], seconds: float, words: ScenarioWords) -> str:
+    """Return the redundant and undecided parts by scenario, and counts of the others."""
     every = [(number, x) for number, each in findings.items() for x in each]
     lines = []
     for number, x in every:
         if x.redundant:
             where = " for motion" if x.assuming else ""
             lines.append(f"scenario {number}: redundant{where}: {_change(x)}")
-    doubts = [(number, x) for number, x in every if x.verdict is Verdict.UNKNOWN]
-    lines += [f"scenario {number}: in doubt: {_change(x)}: {x.reason}" for number, x in doubts]
+    undecided = [(number, x) for number, x in every if x.verdict is Verdict.UNKNOWN]
+    lines += [f"scenario {number}: in doubt: {_change(x)}: {x.reason}" for number, x in undecided]
     lines += [f"  {line}" for line in legend(words)] if lines else []
     redundant = sum(x.redundant is True and x.assuming is None for _, x in every)
     moving = sum(x.redundant is True and x.assuming is not None for _, x in every)
@@ -26,7 +26,7 @@ def as_text(findings: Mapping[int, Sequence[ChangeFinding]], seconds: float, wor
     traces = sum(x.verdict is Verdict.REFUTED for _, x in every) - drives
     lines.append(
         f"{len(every)} changes: {redundant} redundant, {moving} more for motion, {drives} told apart by a "
-        f"drive, {traces} by a trace, {len(doubts)} in doubt{took(seconds or None, ',')}"
+        f"drive, {traces} by a trace, {len(undecided)} in doubt{took(seconds or None, ',')}"
     )
     return "\n".join(lines)
 
@@ -38,8 +38,8 @@ _SIGNS: Mapping[bool | None, str] = {
 }
 
 
-def sheet_of(findings: Sequence[FindingData], names: Mapping[int, str]) -> Sheet[FindingData]:
-    """An entry for each change; ``names``: what scenarios are called."""
+def sheet_of(findings: Sequence[ChangeFindingData], names: Mapping[int, str]) -> Sheet[ChangeFindingData]:
+    """Return a sheet with an entry for each change; ``names``: those of scenarios."""
     return Sheet(
         (
             Column("", lambda x: _SIGNS[x.redundant], "page", link="change"),

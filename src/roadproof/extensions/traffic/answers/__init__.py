@@ -1,1 +1,1 @@
-"""What answers about recordings and traces say, as JSON has it."""
+"""The JSON documents of answers about recordings and traces."""

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import field
 from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers.shared import Formula, OnRoad, PlainHeading, Rational, SetName
+from roadproof.evidence.answers.headings import BaseHeading, OnRoad
+from roadproof.evidence.answers.shared import Formula, Rational, SetName
 from roadproof.evidence.codec import LEFT_OUT, Doc, Key, Rule
 from roadproof.extensions.drivers.verdict import DriverVerdict
 from roadproof.runtime.records import dataclass
@@ -16,8 +17,8 @@ Spans: TypeAlias = tuple[tuple[float, float | None], ...]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Part:
-    """When a part of the formula is true."""
+class FormulaPartData:
+    """The times at which a part of the formula is true."""
 
     formula: str
     true: Annotated[
@@ -31,8 +32,8 @@ class Part:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Override:
-    """What was asked for otherwise than a drive file says."""
+class OverrideData:
+    """A setting of the command line that replaces the one in a drive file."""
 
     what: Annotated[str, Rule(pattern="^(set|parameter .+|option .+)$")]
     asked: str
@@ -40,15 +41,17 @@ class Override:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Place:
-    """On which trace a formula was monitored, and with what."""
+class MonitoredTraceData:
+    """The trace that was monitored, with its road, lanes, set and roles."""
 
     trace: Annotated[str, Doc("Where the trace was read.")]
     start: Annotated[str, Doc("When its first sample is, as the source counts: seconds, or a frame.")]
     set_name: Annotated[SetName, Key("set")]
     road: Annotated[str, Doc("Name of the road.")]
     lanes: Annotated[Mapping[str, str], Doc("The lane that each free lane of the formula stands for.")]
-    overruled: Annotated[tuple[Override, ...], Doc("What was asked for otherwise than a drive file says.")]
+    overruled: Annotated[
+        tuple[OverrideData, ...], Doc("What was asked for otherwise than a drive file says.")
+    ]
     roles: Annotated[
         Mapping[str, str],
         LEFT_OUT,
@@ -61,14 +64,14 @@ class Place:
         parts += [f"set: {self.set_name}", f"road: {self.road}"]
         parts += [f"lane {name}: {lane}" for name, lane in self.lanes.items()]
         for x in self.overruled:
-            asked = f"{x.asked} (the file says {x.said})"
-            parts.append(f"set of the file: {x.said}" if x.what == "set" else f"{x.what}: {asked}")
+            values = f"{x.asked} (the file says {x.said})"
+            parts.append(f"set of the file: {x.said}" if x.what == "set" else f"{x.what}: {values}")
         return "; ".join(parts)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Observation(PlainHeading):
-    """What a formula is on one trace."""
+class ObservationData(BaseHeading):
+    """The verdict, robustness and parts of a formula on one trace."""
 
     formula: Formula
     view: Annotated[View, Doc("dense: a drive, judged exactly; recorded: samples.")]
@@ -93,12 +96,14 @@ class Observation(PlainHeading):
     ]
     seconds: Annotated[float, Rule(minimum=0), Doc("How long the trace is, in s; of a drive its horizon.")]
     dt: Annotated[Rational, Doc("Time between samples, in s; of a drive those of the margin.")]
-    parts: Annotated[tuple[Part, ...], Rule(least=1), Doc("The formula, then the definitions in it.")]
+    parts: Annotated[
+        tuple[FormulaPartData, ...], Rule(least=1), Doc("The formula, then the definitions in it.")
+    ]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(Place, OnRoad, Observation):
-    """Where a formula holds on one trace."""
+class MonitorData(MonitoredTraceData, OnRoad, ObservationData):
+    """The verdict of a formula on one trace, with its parts, notes and driver verdicts."""
 
     notes: Annotated[
         tuple[str, ...],

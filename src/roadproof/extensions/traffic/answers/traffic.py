@@ -4,14 +4,12 @@ from collections.abc import Mapping
 from dataclasses import field
 from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers import shared
+from roadproof.evidence.answers import headings, shared
 from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 from roadproof.runtime.records import dataclass
 
 SCHEMA: Final = "roadproof/traffic-results/5"
-Driver: TypeAlias = Annotated[
-    str, Rule(pattern="^(careful|r157|eu1426|rss)$", called="driver model with formulas")
-]
+Driver: TypeAlias = Annotated[str, Rule(least=1), Doc("A driver model.")]
 MinDanger: TypeAlias = Annotated[shared.Rational, Doc("In s.")]
 Share: TypeAlias = Annotated[float, Rule(minimum=0)] | None
 Interval: TypeAlias = tuple[float, float] | None
@@ -19,8 +17,8 @@ UnequalPair: TypeAlias = tuple[str, int, int, shared.Rational]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Settings:
-    """How traffic is evaluated."""
+class EvaluationSettingsData:
+    """The settings of an evaluation of traffic."""
 
     sets: shared.SetNames
     min_danger: Annotated[
@@ -41,7 +39,7 @@ class Settings:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class ResultsRowData:
     """A spec set under one min_danger, in a road sector."""
 
     sector: Annotated[str, Doc("The road sector of the row's scenarios, in the words of the specification.")]
@@ -86,7 +84,7 @@ class Row:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Checks:
+class ChecksData:
     """Facts that were checked on this run."""
 
     broken: Annotated[tuple[str, ...], Doc("Facts that do not hold, in words: our fault.")]
@@ -97,8 +95,8 @@ class Checks:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Repeat:
-    """What an earlier recording shows too."""
+class RepeatData:
+    """A trace, violation or detection that an earlier recording shows, too."""
 
     recording: str
     pair: Annotated[tuple[int, int], Doc("Ids of vehicles.")]
@@ -108,8 +106,8 @@ class Repeat:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Prediction:
-    """What a driver model says of the matches of a scenario."""
+class DriverLabelsData:
+    """The number of matches of a scenario by the label that a driver model gives them."""
 
     min_danger: MinDanger
     set: shared.SetName
@@ -127,11 +125,11 @@ class Prediction:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(shared.PlainHeading):
+class EvaluationData(headings.BaseHeading):
     """Dangers in recordings, and the scenarios that match them."""
 
     schema: Literal["roadproof/traffic-results/5"] = SCHEMA
-    settings: Settings
+    settings: EvaluationSettingsData
     recordings: Annotated[shared.Count, Doc("Recordings that were used.")]
     vehicles: Annotated[shared.Count, Doc("Vehicles in them.")]
     samples: Annotated[shared.Count, Doc("Samples of these vehicles.")]
@@ -146,13 +144,14 @@ class Answer(shared.PlainHeading):
     undecided: Annotated[shared.Count, Doc("Those that depend on what comes after a trace.")]
     differing: Annotated[shared.Count, Doc("Those that truncated and clip answer otherwise.")]
     table: Annotated[
-        tuple[Row, ...], Doc("A row for each road sector that the recordings have, min_danger and set.")
+        tuple[ResultsRowData, ...],
+        Doc("A row for each road sector that the recordings have, min_danger and set."),
     ]
-    words: Annotated[tuple[shared.KeptWords, ...], Doc("What the scenarios are called.")]
+    words: Annotated[tuple[shared.WordsField, ...], Doc("What the scenarios are called.")]
     detectors: Annotated[Mapping[str, shared.Count], Doc("Pairs that each detector reports.")]
-    checks: Checks
+    checks: ChecksData
     repeats: Annotated[
-        tuple[Repeat, ...], Doc("What an earlier recording shows too, which is counted there only.")
+        tuple[RepeatData, ...], Doc("What an earlier recording shows too, which is counted there only.")
     ]
     notes: Annotated[Mapping[str, tuple[str, ...]], Doc("What is odd, by recording, in words.")]
     left_out: Annotated[
@@ -162,7 +161,7 @@ class Answer(shared.PlainHeading):
     ] = field(default_factory=dict)
     failed: Annotated[Mapping[str, str], Doc("Recordings that were left out, and why.")]
     drivers: Annotated[
-        tuple[Prediction, ...] | None,
+        tuple[DriverLabelsData, ...] | None,
         LEFT_OUT,
         Doc("What driver models say of matches; only where some were asked for."),
     ] = None

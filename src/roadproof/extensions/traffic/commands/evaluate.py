@@ -10,7 +10,7 @@ from roadproof.errors import UsageError
 from roadproof.extensions.drivers.options import add_drivers
 from roadproof.extensions.traffic.settings import Evaluate
 from roadproof.frontends.cli.basis import read_definitions
-from roadproof.frontends.cli.options import print_answer, read_hands, write_build_results
+from roadproof.frontends.cli.options import print_answer, read_executor, write_build_results
 from roadproof.frontends.cli.progress import note
 from roadproof.frontends.settings.flags import read_keywords
 from roadproof.verdict import ExitCode
@@ -55,20 +55,20 @@ def run(args: argparse.Namespace) -> int:
         return ExitCode.AS_EXPECTED
     if not args.out:
         raise UsageError("--out is missing: name the folder for the results, or use --list")
-    asked = read_keywords(args, Evaluate) | {"jobs": read_hands(args), "tell": note}
-    found = evaluate(args.path, args.out, _definitions(args), **asked)
-    write_build_results(args, found)
-    print_answer(found, args.json)
-    _tell_notes(args.out, found.totals)
-    for name, reason in found.failed.items():
+    keywords = read_keywords(args, Evaluate) | {"jobs": read_executor(args), "tell": note}
+    evaluation = evaluate(args.path, args.out, _definitions(args), **keywords)
+    write_build_results(args, evaluation)
+    print_answer(evaluation, args.json)
+    _tell_notes(args.out, evaluation.totals)
+    for name, reason in evaluation.failed.items():
         print(f"skipped recording {name}: {reason}", file=sys.stderr)
     note(f"written to {args.out}: " + ", ".join(sorted(x.name for x in args.out.iterdir())))
-    return found.exit_code
+    return evaluation.exit_code
 
 
 def _tell_notes(out: Path, totals: "Totals") -> None:
-    """What is odd in the recordings, what was left out first, on the screen; all of it is in the results."""
-    from roadproof.world.unread import LEFT_OUT
+    """Print the first notes on the recordings, omissions first; ``results.json`` has all notes."""
+    from roadproof.world.not_read import LEFT_OUT
 
     remarks = [(name, remark) for name, each in totals.notes.items() for remark in each]
     remarks.sort(key=lambda remark: not remark[1].startswith(LEFT_OUT))
@@ -83,9 +83,9 @@ def _definitions(args: argparse.Namespace) -> "Definitions":
 
     if args.drivers:
         add_drivers(args)
-    home = read_definitions(args, Evaluate)
-    if MIN_DANGER in home.values:
+    definitions = read_definitions(args, Evaluate)
+    if MIN_DANGER in definitions.values:
         raise UsageError(f"--param {MIN_DANGER}: evaluate takes several values of it; use --min-danger 0,0.6")
     if args.min_safe is None:
-        return home
-    return replace(home, values={**home.values, MIN_SAFE: args.min_safe})
+        return definitions
+    return replace(definitions, values={**definitions.values, MIN_SAFE: args.min_safe})

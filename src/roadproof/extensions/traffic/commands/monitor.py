@@ -6,7 +6,7 @@ from pathlib import Path
 
 from roadproof.errors import UsageError
 from roadproof.extensions.drivers.options import add_drivers
-from roadproof.extensions.traffic.settings import Monitor
+from roadproof.extensions.traffic.settings import MonitorSettings
 from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import print_answer
 from roadproof.frontends.cli.progress import tell_bends
@@ -35,7 +35,7 @@ examples:
   roadproof monitor 1 highd/01_tracks.csv:12,15 --drivers careful,r157
   roadproof monitor 'F danger(SV,POV)' highd/01_tracks.csv:12,15 --frames 100-400 --end clip
 """
-OPTIONS = Monitor
+OPTIONS = MonitorSettings
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -45,22 +45,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.evidence.drive_file import load_drive
-    from roadproof.extensions.traffic.monitoring import monitor
+    from roadproof.extensions.traffic.monitoring import monitor, specifications_of
 
     if args.picture is not None and args.picture.suffix not in (".png", ".svg"):
         raise UsageError(f"--picture {args.picture}: name a file that ends in .png or .svg")
     file = load_drive(Path(args.trace)) if args.trace.endswith(".json") else None
     if file is not None:
         args.sets = args.sets or (file.set_name,)
+        args.specs = args.specs or specifications_of(file, Path(args.trace).parent)
         args.readings = [*file.options.items(), *(args.readings or ())]
     if args.drivers:
         add_drivers(args)
-    home = read_definitions(args, Monitor)
-    found = monitor(args.formula, args.trace, home, **read_keywords(args, Monitor))
-    for line in found.notes:
-        print(f"note: {line}", file=sys.stderr)
-    print_answer(found, args.json)
+    definitions = read_definitions(args, MonitorSettings)
+    answer = monitor(args.formula, args.trace, definitions, **read_keywords(args, MonitorSettings))
+    for note in answer.notes:
+        print(f"note: {note}", file=sys.stderr)
+    print_answer(answer, args.json)
     if args.picture is not None:
-        found.plot().save(args.picture)
-    tell_bends(found.road)
-    return found.exit_code
+        answer.plot().save(args.picture)
+    tell_bends(answer.road)
+    return answer.exit_code

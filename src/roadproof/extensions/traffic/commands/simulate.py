@@ -44,16 +44,19 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(
             f"--plant with --ramp {args.ramp}: drives are planted on main roads only; omit one of them"
         )
-    each = (_found(x, args.plant_set) if _NUMBERS.fullmatch(x) else _read(Path(x)) for x in args.plant or ())
+    each = (
+        _search_drives(x, args.plant_set) if _NUMBERS.fullmatch(x) else _read(Path(x))
+        for x in args.plant or ()
+    )
     drives = tuple(chain.from_iterable(each))
     if args.plant and not drives:
         raise InputError(f"--plant {' '.join(args.plant)}: no drive that can be planted")
-    found = simulate(args.out, **read_keywords(args, Simulate) | {"plant": drives, "tell": note})
-    for line in found.left_out:
+    simulation = simulate(args.out, **read_keywords(args, Simulate) | {"plant": drives, "tell": note})
+    for line in simulation.left_out:
         _warn(f"not planted: {line}")
-    if drives and not found.planted:
+    if drives and not simulation.planted:
         raise InputError("--plant: no drive could be planted; simulate more seconds, or find other drives")
-    planted = f", {len(found.planted)} drives planted" if drives else ""
+    planted = f", {len(simulation.planted)} drives planted" if drives else ""
     print(f"{args.recordings} recordings of {args.seconds:g} s in {args.out}{planted}")
     return ExitCode.AS_EXPECTED
 
@@ -78,27 +81,29 @@ def _read(path: Path) -> "Iterator[DriveFile]":
 
 
 def _may_be_drive(path: Path) -> bool:
-    """Whether a file of a folder is no other evidence, as ``roadproof witness`` writes beside drives."""
-    from roadproof.evidence.answer import is_answer
-    from roadproof.evidence.drive_file import SCHEMAS_READ
+    """Return whether a file of a folder is no other evidence, as ``roadproof witness`` writes beside
+    drives.
+    """
+    from roadproof.core_record import DRIVES
+    from roadproof.evidence.answer_codec import is_answer
     from roadproof.evidence.strict import read_json
     from roadproof.questions.data import SCHEMA as QUESTION
 
     content = read_json(path)
     kind = content.get("schema") if isinstance(content, dict) else None
-    return kind in SCHEMAS_READ or not (kind == QUESTION or is_answer(str(kind)))
+    return kind in DRIVES or not (kind == QUESTION or is_answer(str(kind)))
 
 
-def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
+def _search_drives(text: str, set_name: str) -> "Iterator[DriveFile]":
     """A drive for each scenario of ``text`` (such as 1-3,7), whose danger lasts up to its horizon.
 
     A recorded trace ends with its last danger, so whatever else the scenario needs has happened then;
     L is the lane of one vehicle's centre at the start, so that vehicle begins in L alone (semantics §7).
     """
-    from roadproof.engines.search.ask import ask
-    from roadproof.engines.search.outcome import Search
-    from roadproof.engines.search.question import Setting
-    from roadproof.library import scenarios as s
+    from roadproof.engines.search.drive_search import search_drive
+    from roadproof.engines.setting import Search, Setting
+    from roadproof.extensions.traffic import scenario_parts
+    from roadproof.library import scenarios
     from roadproof.library.bind import default_values
     from roadproof.library.compose import both
     from roadproof.library.loading import bundled_library
@@ -112,12 +117,17 @@ def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
                 raise UsageError(
                     f"--plant {text}: recordings have a main road only; write scenarios from 1 to 8"
                 )
-            scenario, setting = s.Scenario(number, set_name), Setting(load_road("main-2"))
-            claim, vehicles = s.applied(specification, scenario), s.vehicles_of(specification, scenario)
-            latest = setting.horizon - default_values(bundled_library())[s.MIN_DANGER]
-            alone = s.alone_in_lane(specification, s.lane_owner(specification, scenario))
-            lasting = s.danger_at(specification, *s.endangered(vehicles), latest)
-            outcome = ask(Search(specification, both(claim, alone, lasting), setting))
+            scenario, setting = scenarios.Scenario(number, set_name), Setting(load_road("main-2"))
+            claim, vehicles = (
+                scenarios.apply_scenario(specification, scenario),
+                scenarios.vehicles_of(specification, scenario),
+            )
+            latest = setting.horizon - default_values(bundled_library())[scenarios.MIN_DANGER]
+            alone = scenario_parts.alone_in_lane(
+                specification, scenario_parts.lane_owner(specification, scenario)
+            )
+            lasting = scenario_parts.danger_at(specification, *scenario_parts.danger_pair(vehicles), latest)
+            outcome = search_drive(Search(specification, both(claim, alone, lasting), setting))
             if outcome.drives:
                 yield replace(outcome.drives[0].file, scenario=number, formula=claim.text)
             else:

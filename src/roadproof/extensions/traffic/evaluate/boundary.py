@@ -1,4 +1,4 @@
-"""Matches on measured roads that depend on less than what the projection on a line is off by.
+"""Matches on measured roads that depend on differences smaller than the error of the projection.
 
 A match is sure where its formula holds however each comparison of places comes out that is nearer to its
 boundary than places may be off there: such a comparison counts as false where the formula needs it, and as
@@ -52,54 +52,68 @@ class TraceQuestions(Generic[Key]):
 
 
 @dataclass(frozen=True)
-class Bounds:
-    """For each trace whether a formula holds however places are off, and whether it may hold."""
+class TruthBounds:
+    """The truth of a formula under errors of places, for each trace: for all errors, and for some."""
 
     surely: Bools
     perhaps: Bools
 
 
-def bounds_of(recording: Recording, slack: Slack, asked: TraceQuestions[Key]) -> dict[Key, Bounds]:
+def truth_bounds(
+    recording: Recording, slack: Slack, questions: TraceQuestions[Key]
+) -> dict[Key, TruthBounds]:
     """The bounds of each formula, where places are off by no more than ``slack``."""
-    count = len(asked.low)
-    found = {key: Bounds(*np.zeros((2, count), np.bool_)) for key in asked.formulas}
-    if not count or not found:
-        return found
+    count = len(questions.low)
+    bounds = {key: TruthBounds(*np.zeros((2, count), np.bool_)) for key in questions.formulas}
+    if not count or not bounds:
+        return bounds
     bounded = _BoundedFormulas()
     parts = {
         (key, helps): bounded.visit(without_names(formula), helps)
-        for key, formula in asked.formulas.items()
+        for key, formula in questions.formulas.items()
         for helps in (True, False)
     }
     monitor = compile(parts)
-    for index in blocks(asked.low, asked.high, _CELLS):
-        true = _ask(recording, slack, asked.choose(index), bounded, monitor)
-        for key, bound in found.items():
+    for index in blocks(questions.low, questions.high, _CELLS):
+        true = _bounds_in_block(recording, slack, questions.choose(index), bounded, monitor)
+        for key, bound in bounds.items():
             bound.surely[index], bound.perhaps[index] = true[key, True], true[key, False]
-    return found
+    return bounds
 
 
-def _ask(
+def _bounds_in_block(
     recording: Recording,
     slack: Slack,
-    asked: TraceQuestions[Key],
+    questions: TraceQuestions[Key],
     bounded: "_BoundedFormulas",
     monitor: Monitor[tuple[Key, bool]],
 ) -> Mapping[tuple[Key, bool], Bools]:
-    signals = signals_of(asked.formulas.values())
-    batch = gather(recording, asked.vehicles, asked.low, asked.high, signals, asked.lanes, asked.atoms)
+    signals = signals_of(questions.formulas.values())
+    batch = gather(
+        recording,
+        questions.vehicles,
+        questions.low,
+        questions.high,
+        signals,
+        questions.lanes,
+        questions.atoms,
+    )
     comparisons = tuple(bounded.comparisons)
     margins = observe_margins(comparisons, margin_program(comparisons), batch, slice(0, batch.traces))
-    rows = {name: rows_of(recording, v, asked.low, asked.high) for name, v in asked.vehicles.items()}
+    rows = {
+        name: rows_of(recording, v, questions.low, questions.high) for name, v in questions.vehicles.items()
+    }
     given: dict[Formula, Array] = dict(batch.given)
     for compare in comparisons:
-        off = _off(compare, slack, rows)
+        off = _place_error(compare, slack, rows)
         for sign, atom in zip((-1.0, 1.0), bounded.comparisons[compare], strict=True):
             with np.errstate(invalid="ignore"):  # an endless margin that is endlessly off is not known
                 shifted = np.nan_to_num(margins[compare] + sign * off, nan=sign * np.inf)
             relation = COMPARISONS[">" if compare.op in ("<", ">") else ">="]
             given[atom] = relation(shifted, 0.0)
-    return monitor.holds(Batch(batch.dt, batch.lengths, batch.signals, batch.sizes, given), asked.convention)
+    return monitor.holds(
+        Batch(batch.dt, batch.lengths, batch.signals, batch.sizes, given), questions.convention
+    )
 
 
 @dataclass
@@ -132,7 +146,16 @@ class _BoundedFormulas:
                 return f.Not(self.visit(body, not helps))
             case f.Some() | f.Every():
                 return formula
-            case _:
+            case (
+                f.Truth()
+                | f.Occupies()
+                | f.And()
+                | f.Or()
+                | f.Until()
+                | f.Eventually()
+                | f.Always()
+                | f.Application()
+            ):
                 parts = tuple(self.visit(child, helps) for child in f.children(formula))
                 return f.with_children(formula, parts)
 
@@ -141,14 +164,14 @@ def _is_place(leaf: t.Leaf) -> bool:
     return isinstance(leaf, t.Signal) and leaf.name in PLACES
 
 
-def _off(compare: Compare, slack: Slack, rows: Mapping[str, Integers]) -> Floats:
-    """By how much both sides together may be off, for each sample of each trace.
+def _place_error(compare: Compare, slack: Slack, rows: Mapping[str, Integers]) -> Floats:
+    """Return by how much both sides together may be off, for each sample of each trace.
 
     That is what each box is off by, and between boxes what the road turns there, times how far beside the
     line they are: so much longer or shorter is the way there than the line (``Slack``). Endless where
     places are not added and multiplied by numbers only.
     """
-    shares = _shares(t.subtract(compare.left, compare.right))
+    shares = _coefficients(t.subtract(compare.left, compare.right))
     shape = next(iter(rows.values())).shape
     if shares is None:
         return np.full(shape, np.inf)
@@ -167,8 +190,8 @@ def _off(compare: Compare, slack: Slack, rows: Mapping[str, Integers]) -> Floats
     return off
 
 
-def _shares(term: t.Term) -> dict[t.Signal, Fraction] | None:
-    """What each place is multiplied by in a sum; None where places are elsewhere than in sums."""
+def _coefficients(term: t.Term) -> dict[t.Signal, Fraction] | None:
+    """Return the coefficient of each place in a linear term; None for a term that is not linear in places."""
     if not any(_is_place(leaf) for leaf in t.leaves(term)):
         return {}
     match term:
@@ -177,7 +200,7 @@ def _shares(term: t.Term) -> dict[t.Signal, Fraction] | None:
         case t.Sum(parts):
             total: dict[t.Signal, Fraction] = {}
             for part in parts:
-                shares = _shares(part)
+                shares = _coefficients(part)
                 if shares is None:
                     return None
                 for signal, share in shares.items():
@@ -186,12 +209,14 @@ def _shares(term: t.Term) -> dict[t.Signal, Fraction] | None:
         case t.Product(factors):
             numbers = [t.constant_value(x) for x in factors]
             others = [x for x, value in zip(factors, numbers, strict=True) if value is None]
-            inner = _shares(others[0]) if len(others) == 1 else None
+            inner = _coefficients(others[0]) if len(others) == 1 else None
             if inner is None:
                 return None
             factor = Fraction(1)
             for value in numbers:
                 factor *= Fraction(1) if value is None else value
             return {signal: share * factor for signal, share in inner.items()}
-        case _:
+        case t.Quotient() | t.Power() | t.Maximum() | t.Minimum() | t.Inverse() | t.CustomSignal():
+            return None
+        case t.Number() | t.Parameter() | t.Variable() | t.Size():
             return None

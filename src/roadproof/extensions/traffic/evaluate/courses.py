@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.errors import UsageError
-from roadproof.extensions.drivers.driving import DriverSettings
+from roadproof.extensions.drivers.driver_settings import DriverSettings
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, ManoeuvreName
-from roadproof.extensions.drivers.models import MODELS, ModelName, course_in, foreseen
+from roadproof.extensions.drivers.models import MODELS, course_in, foreseen
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Specification
 from roadproof.logic.formula import Formula
@@ -18,7 +18,7 @@ BEGINS = "begins"
 
 
 @dataclass(frozen=True)
-class Course:
+class ManoeuvreTest:
     """A manoeuvre: the ``scenarios`` that it is the course of, and its ``vehicles``, SV first.
 
     ``begins`` is asked whether it begins in a state (BEGINS). ``models`` are those that speak of it, with
@@ -29,16 +29,16 @@ class Course:
     scenarios: tuple[int, ...]
     vehicles: tuple[str, ...]
     begins: Monitor[str]
-    models: tuple[ModelName, ...]
+    models: tuple[str, ...]
     settings: DriverSettings
 
 
-def courses_of(
+def manoeuvre_tests(
     sets: Sequence[Specification],
     values: Mapping[str, Fraction],
     drivers: Sequence[str],
     scenarios: Sequence[int],
-) -> Iterator[Course]:
+) -> Iterator[ManoeuvreTest]:
     """The courses of the scenarios of which one of the models speaks, at ``values`` of parameters (SI).
 
     Raises ``UsageError`` where a formula is not the same in all sets.
@@ -49,7 +49,7 @@ def courses_of(
         if numbers and models:
             begins = compile({BEGINS: _meaning(sets, values, foreseen(name, manoeuvre.vehicles))})
             settings = DriverSettings(values, sets[0].options)
-            yield Course(name, numbers, manoeuvre.vehicles, begins, models, settings)
+            yield ManoeuvreTest(name, numbers, manoeuvre.vehicles, begins, models, settings)
 
 
 def _meaning(sets: Sequence[Specification], values: Mapping[str, Fraction], text: str) -> Formula:

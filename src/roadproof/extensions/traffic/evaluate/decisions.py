@@ -8,14 +8,16 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
+from pathlib import Path
 
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.subject import TestedSide
-from roadproof.extensions.drivers.driving import DriverSettings, require, rest_of
-from roadproof.extensions.drivers.initial_state import State
+from roadproof.extensions.drivers.driver_settings import DriverSettings
+from roadproof.extensions.drivers.driving import require, rest_of
+from roadproof.extensions.drivers.initial_state import InitialState
 from roadproof.extensions.drivers.manoeuvres import ManoeuvreName
-from roadproof.extensions.drivers.models import DRIVERS, MODELS, ModelName, course_in, foreseen
-from roadproof.extensions.drivers.outcome import Outcome, shown_by_drive, told_faster
+from roadproof.extensions.drivers.models import MODELS, course_in, foreseen, specifications
+from roadproof.extensions.drivers.outcome import Outcome, faster_text, shown_by_drive
 from roadproof.extensions.drivers.replay import Replayed, first_cut, replay
 from roadproof.extensions.drivers.sampled_replay import replay_samples
 from roadproof.extensions.traffic.evaluate.courses import BEGINS
@@ -26,13 +28,13 @@ from roadproof.library.bind import values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import load_library
 from roadproof.library.scenarios import number_in
-from roadproof.library.specification import Specification, on_request, read_specification
+from roadproof.library.specification import Specification, read_specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.reasons import NO_REASON, Reason, ReasonKind
 from roadproof.runtime.canonical import digest
-from roadproof.semantics.exact.algebraic import approximate
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.algebraic import as_float
+from roadproof.semantics.exact.judging import judge
 from roadproof.semantics.exact.truth import Cut
 from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.drive import Drive
@@ -54,7 +56,7 @@ class DrivenTest:
 
 @dataclass(frozen=True)
 class Decision:
-    """What becomes of a scenario under a model.
+    """The result of a scenario in which a driver model drives SV.
 
     ``at``: when the manoeuvre begins (s), None where it never does. ``gap``: the least gap that is left (m).
     ``instant``, ``speed``: when SV touches POV (s), and how much faster it then is (m/s). ``start``: the
@@ -64,7 +66,7 @@ class Decision:
 
     scenario: str
     vehicles: tuple[str, ...]
-    driver: ModelName
+    driver: str
     side: TestedSide
     at: float | None = None
     gap: float | None = None
@@ -81,7 +83,7 @@ class Drivers:
 
     specification: Specification
     values: Mapping[str, Fraction]
-    models: tuple[ModelName, ...]
+    models: tuple[str, ...]
     _read: dict[str, Formula] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
@@ -89,7 +91,7 @@ class Drivers:
         """Parameters and options of the models."""
         return DriverSettings(self.values, self.specification.options)
 
-    def of(self, manoeuvre: ManoeuvreName) -> tuple[ModelName, ...]:
+    def of(self, manoeuvre: ManoeuvreName) -> tuple[str, ...]:
         """The models that speak of a manoeuvre."""
         return tuple(x for x in self.models if manoeuvre in MODELS[x].manoeuvres)
 
@@ -101,30 +103,39 @@ class Drivers:
         return self._read[text]
 
 
-def drivers_in(home: Specification, given: Mapping[str, Fraction], names: tuple[str, ...]) -> Drivers | None:
+def driver_models(
+    specification_in: Specification, parameters: Mapping[str, Fraction], names: tuple[str, ...]
+) -> Drivers | None:
     """Return the driver models of some names, in definitions on top of which ``driver.spec`` is read.
 
-    ``given``: values of parameters (SI). Raises ``InputError``, ``UsageError``.
+    ``parameters``: values of parameters (SI). Raises ``InputError``, ``UsageError``.
     """
     if not names:
         return None
-    library = home.library
-    driver = read_specification(on_request()[DRIVERS])
-    if all(x.text != driver.text for x in library.files):
-        library = load_library([driver, *library.files])
-    specification = library.select(home.set_name, home.options)
-    values = values_with(library, given)
+    library = specification_in.library
+    read = {x.text for x in library.files}
+    missing = [x for x in map(read_specification, map(Path, specifications())) if x.text not in read]
+    if missing:
+        library = load_library([*missing, *library.files])
+    specification = library.select(specification_in.set_name, specification_in.options)
+    values = values_with(library, parameters)
     require(specification, values)
     return Drivers(specification, values, tuple(MODELS[name].name for name in names))
 
 
 def content_of(drivers: Drivers) -> str:
     """A digest that changes with the models, with every definition in force, and with parameters."""
-    home = drivers.specification
-    return digest(drivers.models, home.set_name, home.options, drivers.values, home.library.fingerprint)
+    specification = drivers.specification
+    return digest(
+        drivers.models,
+        specification.set_name,
+        specification.options,
+        drivers.values,
+        specification.library.fingerprint,
+    )
 
 
-def course_of(scenario: str) -> ManoeuvreName | None:
+def manoeuvre_of(scenario: str) -> ManoeuvreName | None:
     """The manoeuvre of a scenario by name; None for classes, and for scenarios that no model speaks of."""
     number = number_in(scenario)
     return None if number is None else course_in(number)
@@ -137,7 +148,7 @@ def decide_drive(
     file: DriveFile, drivers: Drivers, scenario: str, vehicles: tuple[str, ...], since: float
 ) -> Iterator[Decision]:
     """Yield a decision for each model that speaks of the scenario, which holds from ``since`` (s) on."""
-    manoeuvre = course_of(scenario)
+    manoeuvre = manoeuvre_of(scenario)
     if manoeuvre is None or not drivers.of(manoeuvre):
         return
     begins, start = drivers.begins(manoeuvre, vehicles), Fraction(since)
@@ -145,30 +156,30 @@ def decide_drive(
     if cut is None:
         yield from _not_foreseen(drivers, manoeuvre, scenario, vehicles)
         return
-    at, state = approximate(cut.point), _state_at(file, cut).start(manoeuvre, vehicles)
+    at, state = as_float(cut.point), _state_at(file, cut).start(manoeuvre, vehicles)
     for model in drivers.of(manoeuvre):
-        found = replay(
+        replayed = replay(
             file.drive, file.road, vehicles, manoeuvre, model, start, drivers.specification, drivers.settings
         )
-        decision = _decided(scenario, vehicles, model, found.outcome, at, state)
-        yield replace(decision, driven=_driven(found, vehicles, start))
+        decision = _decision(scenario, vehicles, model, replayed.outcome, at, state)
+        yield replace(decision, driven=_driven_test(replayed, vehicles, start))
 
 
-def _driven(found: Replayed, vehicles: tuple[str, ...], since: Fraction) -> DrivenTest | None:
-    shown = shown_by_drive(found.outcome, vehicles)
-    if found.drive is None or not shown:
+def _driven_test(replayed: Replayed, vehicles: tuple[str, ...], since: Fraction) -> DrivenTest | None:
+    shown = shown_by_drive(replayed.outcome, vehicles)
+    if replayed.drive is None or not shown:
         return None
     begin = f"{since} s" if since.denominator == 1 else f"{since}*1 s"
     formula = f"F[{begin}, {begin}] ({shown})" if since else shown
-    return DrivenTest(found.drive, formula, max(rest_of(found.drive), since))
+    return DrivenTest(replayed.drive, formula, max(rest_of(replayed.drive), since))
 
 
-def _state_at(file: DriveFile, cut: Cut) -> State:
+def _state_at(file: DriveFile, cut: Cut) -> InitialState:
     """The state at a cut; near it where it is just after a point, or at an irrational one."""
-    time = cut.point if isinstance(cut.point, Fraction) else Fraction(approximate(cut.point))
+    time = cut.point if isinstance(cut.point, Fraction) else Fraction(as_float(cut.point))
     time += _JUST_AFTER if cut.after else 0
     states = {name: state_at(motion, time) for name, motion in file.drive.vehicles.items()}
-    return State(
+    return InitialState(
         {(x, name): _rounded(getattr(at, x)) for name, at in states.items() for x in SIGNALS},
         {(x, n): getattr(m, x) for n, m in file.drive.vehicles.items() for x in ("length", "width")},
     )
@@ -183,23 +194,26 @@ def decide_trace(
     scenario: str,
     vehicles: tuple[str, ...],
     since: float,
-    called: tuple[str, ...],
+    names: tuple[str, ...],
 ) -> Iterator[Decision]:
-    """As ``decide_drive``, of samples; ``called``: what the test calls the vehicles."""
-    manoeuvre = course_of(scenario)
+    """Yield a decision for each model on a sampled trace (see ``decide_drive``).
+
+    ``names``: the vehicles as the test calls them.
+    """
+    manoeuvre = manoeuvre_of(scenario)
     if manoeuvre is None or not drivers.of(manoeuvre):
         return
     batch = trace.batch
     answer = compile({BEGINS: drivers.begins(manoeuvre, vehicles)}).evaluate(batch, "truncated", at="all")
     true = answer.answers[BEGINS].true[:, 0]
     first = round(since / float(batch.dt))
-    begun = next((k for k in range(first, int(batch.lengths[0])) if true[k]), None)
-    if begun is None:
-        yield from _not_foreseen(drivers, manoeuvre, scenario, called)
+    begin = next((k for k in range(first, int(batch.lengths[0])) if true[k]), None)
+    if begin is None:
+        yield from _not_foreseen(drivers, manoeuvre, scenario, names)
         return
-    state = State(
+    state = InitialState(
         {
-            (x, name): _rounded(batch.signals[x, name][begun, 0])
+            (x, name): _rounded(batch.signals[x, name][begin, 0])
             for name in vehicles
             for x in SIGNALS
             if (x, name) in batch.signals
@@ -208,32 +222,34 @@ def decide_trace(
     )
     scene = scene_of(batch, trace.road, vehicles, first * batch.dt)
     for model in drivers.of(manoeuvre):
-        found = replay_samples(scene, manoeuvre, model, drivers.settings)
-        at = float(begun * batch.dt)
-        yield _decided(scenario, called, model, found, at, state.start(manoeuvre, vehicles))
+        outcome = replay_samples(scene, manoeuvre, model, drivers.settings)
+        at = float(begin * batch.dt)
+        yield _decision(scenario, names, model, outcome, at, state.start(manoeuvre, vehicles))
 
 
 # --- tests with a formula -------------------------------------------------------------------------
 
 
-def decide_formula(found: Sequence[Decision], missed: Collection[tuple[str, str]] = ()) -> Iterator[Decision]:
-    """What becomes of a test with a formula, of some drives of which there are decisions.
+def decide_formula(
+    decisions: Sequence[Decision], searched_in_vain: Collection[tuple[str, str]] = ()
+) -> Iterator[Decision]:
+    """Yield the decision on a test with a formula, from decisions on some of its drives.
 
     Drives on both sides show that it is partly preventable; one side alone decides nothing of other drives.
-    ``missed``: scenarios and models for which a search for a drive on a further side found none.
+    ``searched_in_vain``: scenarios and models for which a search for a drive on a further side found none.
     """
     groups: dict[tuple[str, str], list[Decision]] = {}
-    for x in found:
+    for x in decisions:
         groups.setdefault((x.scenario, x.driver), []).append(x)
-    for key, those in groups.items():
-        made = replace(those[0], at=None, gap=None, instant=None, speed=None, start={}, driven=None)
-        counts = Counter(x.side for x in those)
+    for key, group in groups.items():
+        undecided_test = replace(group[0], at=None, gap=None, instant=None, speed=None, start={}, driven=None)
+        counts = Counter(x.side for x in group)
         if {"preventable", "unpreventable"} <= counts.keys():
-            yield replace(made, side="partly", reason=Why.BOTH_SIDES())
+            yield replace(undecided_test, side="partly", reason=ReasonKind.BOTH_SIDES())
         else:
-            told = ", ".join(f"{count} {side}" for side, count in counts.items())
-            why = Why.ONE_SIDE_SOUGHT if key in missed else Why.ONE_SIDE
-            yield replace(made, side="undecided", reason=why(told))
+            counts_text = ", ".join(f"{count} {side}" for side, count in counts.items())
+            why = ReasonKind.ONE_SIDE_SOUGHT if key in searched_in_vain else ReasonKind.ONE_SIDE
+            yield replace(undecided_test, side="undecided", reason=why(counts_text))
 
 
 # --- both ----------------------------------------------------------------------------------------
@@ -242,16 +258,16 @@ def decide_formula(found: Sequence[Decision], missed: Collection[tuple[str, str]
 def _not_foreseen(
     drivers: Drivers, manoeuvre: ManoeuvreName, scenario: str, vehicles: tuple[str, ...]
 ) -> Iterator[Decision]:
-    reason = Why.NOT_BEGUN(manoeuvre)
+    reason = ReasonKind.NOT_BEGUN(manoeuvre)
     for model in drivers.of(manoeuvre):
         yield Decision(scenario, vehicles, model, "not foreseen", reason=reason)
 
 
-def _decided(
+def _decision(
     scenario: str,
     vehicles: tuple[str, ...],
-    model: ModelName,
-    found: Outcome,
+    model: str,
+    outcome: Outcome,
     at: float,
     start: Mapping[str, float],
 ) -> Decision:
@@ -259,13 +275,13 @@ def _decided(
         scenario,
         vehicles,
         model,
-        RESULTS[found.result],
+        RESULTS[outcome.result],
         round(at, _PLACES),
-        found.gap,
-        found.instant,
-        found.speed,
+        outcome.gap,
+        outcome.instant,
+        outcome.speed,
         start,
-        found.reason,
+        outcome.reason,
     )
 
 
@@ -273,10 +289,10 @@ def _rounded(value: float | Fraction) -> Fraction:
     return Fraction(round(Fraction(value) * 10**_PLACES), 10**_PLACES)
 
 
-def said(decision: Decision) -> str:
+def decision_text(decision: Decision) -> str:
     """The side with its figures: ``preventable (3.2 m left)``, ``unpreventable (at 4.1 s, 9 m/s faster)``."""
     if decision.gap is not None:
         return f"{decision.side} ({decision.gap:g} m left)"
     if decision.instant is not None and decision.speed is not None:
-        return f"{decision.side} (touches at {decision.instant:g} s, {told_faster(decision.speed)})"
+        return f"{decision.side} (touches at {decision.instant:g} s, {faster_text(decision.speed)})"
     return decision.side

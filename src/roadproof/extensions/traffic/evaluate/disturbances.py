@@ -1,4 +1,4 @@
-"""Where danger arises between two vehicles: the filter and the cuts of semantics §7.
+"""Finds danger between two vehicles: the filter and the cuts of semantics §7.
 
 A trace starts at the first sample where initSafe holds, its whole window inside the common frames,
 and ends with the last sample of the last danger interval after that.
@@ -9,7 +9,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from roadproof.extensions.traffic.evaluate.questions import SAFE, VIOLATION, Danger, Questions
+from roadproof.extensions.traffic.evaluate.questions import SAFE, VIOLATION, DangerKey, EvaluationQuestions
 from roadproof.extensions.traffic.evaluate.traces import blocks, gather, gather_rows
 from roadproof.extensions.traffic.formats.pairs import Pairs, Triples, all_moments, common_pairs, near_moments
 from roadproof.extensions.traffic.formats.recording import Bools, Integers, Recording, offsets
@@ -38,24 +38,24 @@ class Disturbances:
     next_safe: Integers
     last_danger: tuple[Integers, ...]
 
-    def choose(self, wanted: Bools) -> "Disturbances":
-        """Those of some of the pairs."""
-        if wanted.all():
+    def choose(self, selected: Bools) -> "Disturbances":
+        """Return the disturbances of the selected pairs."""
+        if selected.all():
             return self
-        rows = np.flatnonzero(np.repeat(wanted, self.pairs.samples))
-        pairs = self.pairs.choose(wanted)
+        rows = np.flatnonzero(np.repeat(selected, self.pairs.samples))
+        pairs = self.pairs.choose(selected)
         return Disturbances(
             self.meeting,
             pairs,
-            self.start[wanted],
-            tuple(x[wanted] for x in self.end),
+            self.start[selected],
+            tuple(x[selected] for x in self.end),
             offsets(pairs.samples),
             self.next_safe[rows],
             tuple(x[rows] for x in self.last_danger),
         )
 
 
-def find_disturbances(recording: Recording, questions: Questions) -> Disturbances:
+def find_disturbances(recording: Recording, questions: EvaluationQuestions) -> Disturbances:
     """The disturbances between vehicles of the classes that the settings name."""
     meeting = common_pairs(recording, np.isin(recording.kind, questions.settings.classes))
     pair, frame = _violations(recording, questions, meeting)
@@ -76,7 +76,7 @@ def find_disturbances(recording: Recording, questions: Questions) -> Disturbance
         place = (sample + offset[:-1][index]).take(inside)
         next_safe[place] = _next(true[SAFE], frames).take(inside)
         for k, last in enumerate(last_danger):
-            last[place] = _last(true[Danger(k)], frames).take(inside)
+            last[place] = _last(true[DangerKey(k)], frames).take(inside)
     start = next_safe[offset[:-1]]
     end = []
     for steps, danger in zip(questions.danger_steps, last_danger, strict=True):
@@ -85,16 +85,18 @@ def find_disturbances(recording: Recording, questions: Questions) -> Disturbance
     return Disturbances(meeting, pairs, start, tuple(end), offset, next_safe, last_danger)
 
 
-def _violations(recording: Recording, questions: Questions, meeting: Pairs) -> tuple[Integers, Integers]:
-    """Where there is an rssViolation: the place in ``meeting`` and the frame, in order of pairs."""
+def _violations(
+    recording: Recording, questions: EvaluationQuestions, meeting: Pairs
+) -> tuple[Integers, Integers]:
+    """Return where there is an rssViolation: the place in ``meeting`` and the frame, in order of pairs."""
     if not questions.violation_is_state:
         return _violations_in_time(recording, questions, meeting)
     if questions.reach is None:
-        found = all_moments(recording, meeting)
+        parts = all_moments(recording, meeting)
     else:
-        found = near_moments(recording, meeting, questions.reach)
+        parts = near_moments(recording, meeting, questions.reach)
     pairs, frames = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
-    for moments in found:
+    for moments in parts:
         if not len(moments):
             continue
         of_pair = (x.take(moments.pair) for x in (meeting.first, meeting.second))
@@ -109,9 +111,9 @@ def _violations(recording: Recording, questions: Questions, meeting: Pairs) -> t
 
 
 def _violations_in_time(
-    recording: Recording, questions: Questions, meeting: Pairs
+    recording: Recording, questions: EvaluationQuestions, meeting: Pairs
 ) -> tuple[Integers, Integers]:
-    """The same for a violation that is more than a matter of one moment."""
+    """Return the violations (see ``_violations``) of a formula with temporal operators."""
     pairs, frames = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
     for index in blocks(meeting.low, meeting.high, 400_000):
         block = meeting.choose(index)
@@ -131,7 +133,7 @@ def _spread_hits(hits: Integers, index: Integers) -> tuple[Integers, Integers]:
     return np.arange(len(within)) + np.repeat(hits[index] - offsets(counts)[:-1], counts), within
 
 
-def _batch(recording: Recording, questions: Questions, block: Pairs, truth: Bools) -> Batch:
+def _batch(recording: Recording, questions: EvaluationQuestions, block: Pairs, truth: Bools) -> Batch:
     """The traces of pairs, with the ``truth`` of an rssViolation where that is a matter of one moment."""
     given = {questions.violation.formulas[VIOLATION]: truth} if questions.violation_is_state else {}
     if questions.danger.rests_on(given):
@@ -141,12 +143,12 @@ def _batch(recording: Recording, questions: Questions, block: Pairs, truth: Bool
 
 
 def _next(truth: Bools, frames: Integers) -> Integers:
-    """For each sample the frame of the first true one from there on, down the rows."""
+    """Return for each sample the frame of the first true sample from there on, down the rows."""
     return np.minimum.accumulate(np.where(truth, frames, NEVER)[::-1])[::-1]
 
 
 def _last(truth: Bools, frames: Integers) -> Integers:
-    """For each sample the frame of the last true one up to there, down the rows."""
+    """Return for each sample the frame of the last true sample up to there, down the rows."""
     return np.maximum.accumulate(np.where(truth, frames, -1))
 
 
@@ -158,17 +160,22 @@ class CutTriples:
     start: Integers
     end: tuple[Integers, ...]
 
-    def choose(self, wanted: Bools) -> "CutTriples":
-        return CutTriples(self.triples.choose(wanted), self.start[wanted], tuple(x[wanted] for x in self.end))
+    def choose(self, selected: Bools) -> "CutTriples":
+        return CutTriples(
+            self.triples.choose(selected), self.start[selected], tuple(x[selected] for x in self.end)
+        )
 
 
-def cut_triples(questions: Questions, found: Disturbances, triples: Triples) -> CutTriples:
-    """Where each triple starts and ends; those in which no danger arises are dropped.
+def cut_triples(questions: EvaluationQuestions, disturbances: Disturbances, triples: Triples) -> CutTriples:
+    """Return where each triple starts and ends; those in which no danger arises are dropped.
 
     The start is the first frame where initSafe holds for SV with both POVs, windows inside the
     frames that all three share (semantics §7).
     """
-    near, far = _Lookup(found, triples.sv, triples.pov1), _Lookup(found, triples.sv, triples.pov2)
+    near, far = (
+        _Lookup(disturbances, triples.sv, triples.pov1),
+        _Lookup(disturbances, triples.sv, triples.pov2),
+    )
     latest = triples.high - questions.safe_steps
     start, waiting = triples.low.copy(), np.arange(len(triples))
     while len(waiting):
@@ -188,17 +195,17 @@ def cut_triples(questions: Questions, found: Disturbances, triples: Triples) -> 
 class _Lookup:
     """Entries of Disturbances for pairs given one by one; a pair that never violates is always safe."""
 
-    def __init__(self, found: Disturbances, one: Integers, other: Integers) -> None:
-        pairs = found.pairs
-        self.found = found
+    def __init__(self, disturbances: Disturbances, one: Integers, other: Integers) -> None:
+        pairs = disturbances.pairs
+        self.found = disturbances
         size = 1 + int(max(one.max(initial=0), other.max(initial=0), pairs.second.max(initial=0)))
         keys = pairs.first * size + pairs.second
-        wanted = np.minimum(one, other) * size + np.maximum(one, other)
-        place = np.searchsorted(keys, wanted)
+        pair_keys = np.minimum(one, other) * size + np.maximum(one, other)
+        place = np.searchsorted(keys, pair_keys)
         at = np.minimum(place, max(len(keys) - 1, 0))
-        self.known = keys[at] == wanted if len(keys) else np.zeros(len(wanted), bool)
-        self.low = pairs.low[at] if len(keys) else np.zeros(len(wanted), np.int64)
-        self.shift = found.offset[at] - self.low if len(keys) else self.low
+        self.known = keys[at] == pair_keys if len(keys) else np.zeros(len(pair_keys), bool)
+        self.low = pairs.low[at] if len(keys) else np.zeros(len(pair_keys), np.int64)
+        self.shift = disturbances.offset[at] - self.low if len(keys) else self.low
 
     def next_safe(self, index: Integers, frame: Integers, latest: Integers) -> Integers:
         """The first safe frame from ``frame`` to ``latest`` for the pairs at ``index``; NEVER if none."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from roadproof.extensions.traffic.evaluate.boundary import Bounds, TraceQuestions, bounds_of
+from roadproof.extensions.traffic.evaluate.boundary import TraceQuestions, TruthBounds, truth_bounds
 from roadproof.extensions.traffic.evaluate.detectors import Detection, find_detections, order_of_detections
 from roadproof.extensions.traffic.evaluate.disturbances import (
     NEVER,
@@ -17,15 +17,15 @@ from roadproof.extensions.traffic.evaluate.disturbances import (
     cut_triples,
     find_disturbances,
 )
-from roadproof.extensions.traffic.evaluate.foretelling import foretell
+from roadproof.extensions.traffic.evaluate.foretelling import with_driver_labels
 from roadproof.extensions.traffic.evaluate.matching import Match, PossibleMatch
-from roadproof.extensions.traffic.evaluate.questions import START, MonitorKey, Questions
+from roadproof.extensions.traffic.evaluate.questions import START, EvaluationQuestions, MonitorKey
 from roadproof.extensions.traffic.evaluate.traces import OTHER_LANE, gather
-from roadproof.extensions.traffic.formats.neighbours import Overlap, find_overlaps, told_overlap
+from roadproof.extensions.traffic.formats.overlaps import Overlap, find_overlaps, overlap_text
 from roadproof.extensions.traffic.formats.pairs import Pairs, row_of, triples_of
 from roadproof.extensions.traffic.formats.recording import Bools, Integers, Recording
-from roadproof.extensions.traffic.formats.repeats import FramePair, see_pair
-from roadproof.extensions.traffic.formats.windows import Window
+from roadproof.extensions.traffic.formats.repeats import FramePair, frame_pair
+from roadproof.extensions.traffic.formats.windows import TimeWindow
 from roadproof.library.scenarios import LANE, PAIR
 from roadproof.logic.formula import Formula
 from roadproof.semantics.sampled.answers import Convention
@@ -35,7 +35,7 @@ OTHER: Mapping[Convention, Convention] = {"truncated": "clip", "clip": "truncate
 
 
 @dataclass(frozen=True)
-class Trace:
+class DisturbanceTrace:
     """A disturbance: an unordered pair under one minDanger. Lanes and road sectors are those at its start."""
 
     first: int
@@ -50,7 +50,7 @@ class Trace:
 
 @dataclass(frozen=True)
 class Findings:
-    """What was found in one recording. ``violating``: the pairs (ids, ascending) with an rssViolation in some
+    """The findings in one recording. ``violating``: the pairs (ids, ascending) with an rssViolation in some
     frame.
 
     ``undecided`` counts questions whose answer depends on what comes after the trace, ``differing``
@@ -68,7 +68,7 @@ class Findings:
     asked: int
     undecided: int
     differing: int
-    traces: tuple[Trace, ...]
+    traces: tuple[DisturbanceTrace, ...]
     matches: tuple[Match, ...]
     detections: tuple[Detection, ...]
     notes: tuple[str, ...]
@@ -77,13 +77,13 @@ class Findings:
     possible: tuple[PossibleMatch, ...] = ()
 
 
-def evaluate_recording(recording: Recording, questions: Questions) -> Findings:
+def evaluate_recording(recording: Recording, questions: EvaluationQuestions) -> Findings:
     """Filter, cut and match all pairs, and all triples for the scenarios of three cars."""
-    return evaluate_windows([Window(recording, np.ones(recording.vehicles, bool))], questions)
+    return evaluate_windows([TimeWindow(recording, np.ones(recording.vehicles, bool))], questions)
 
 
-def evaluate_windows(windows: Iterable[Window], questions: Questions) -> Findings:
-    """As ``evaluate_recording``, of a recording in windows of time, of which one at a time is looked at.
+def evaluate_windows(windows: Iterable[TimeWindow], questions: EvaluationQuestions) -> Findings:
+    """Evaluate a recording in windows of time, one window in memory at a time.
 
     A pair or triple is looked at where the last of its vehicles comes in, on all of its common frames.
     """
@@ -98,52 +98,61 @@ def evaluate_windows(windows: Iterable[Window], questions: Questions) -> Finding
         name: tuple(sorted((x for part in parts for x in getattr(part, name)), key=order))
         for name, order in _ORDERS.items()
     }
-    told = map(told_overlap, sorted(overlaps, key=lambda x: x[:2]))
-    none = _say_missing(questions.settings.classes, kinds)
-    notes = (*parts[-1].notes, *none, *told, *_say_uncertain([x for part in parts for x in part.matches]))
+    overlap_notes = map(overlap_text, sorted(overlaps, key=lambda x: x[:2]))
+    class_notes = _note_on_classes(questions.settings.classes, kinds)
+    notes = (
+        *parts[-1].notes,
+        *class_notes,
+        *overlap_notes,
+        *_note_on_uncertain([x for part in parts for x in part.matches]),
+    )
     return replace(parts[-1], **added, **rows, notes=notes)  # type: ignore[arg-type]
 
 
-def _say_missing(classes: tuple[str, ...], kinds: set[str]) -> Iterator[str]:
+def _note_on_classes(classes: tuple[str, ...], kinds: set[str]) -> Iterator[str]:
     """A note where nothing is evaluated, since no vehicle is of the classes that were asked for."""
     if kinds and not kinds & {*classes}:
         yield f"no vehicle of class {', '.join(classes)}: its classes are {', '.join(sorted(kinds))}"
 
 
-def _evaluate(window: Window, questions: Questions) -> tuple[Findings, Iterable[Overlap]]:
+def _evaluate(window: TimeWindow, questions: EvaluationQuestions) -> tuple[Findings, Iterable[Overlap]]:
     """The findings of one window, and the boxes that overlap there."""
     recording = window.recording
     if recording.rate != questions.rate:
         raise ValueError(f"questions for {questions.rate} Hz put to a recording of {recording.rate} Hz")
-    everything = find_disturbances(recording, questions)
-    found = everything.choose(window.has(everything.pairs.first, everything.pairs.second))
+    all_disturbances = find_disturbances(recording, questions)
+    disturbances = all_disturbances.choose(
+        window.has(all_disturbances.pairs.first, all_disturbances.pairs.second)
+    )
     tally = _Tally(questions)
-    matches, possible = _match_pairs(recording, questions, found, tally)
+    matches, possible = _match_pairs(recording, questions, disturbances, tally)
     cut = None
     if questions.triple_start is not None:
-        cut = _candidates(window, questions, everything)
+        cut = _candidates(window, questions, all_disturbances)
         matches += _match_triples(recording, questions, cut, tally)
-    meeting = everything.meeting.choose(window.has(everything.meeting.first, everything.meeting.second))
+    meeting = all_disturbances.meeting.choose(
+        window.has(all_disturbances.meeting.first, all_disturbances.meeting.second)
+    )
     detections = find_detections(recording, questions, meeting)
     findings = Findings(
         recording=recording.name,
         vehicles=int(np.count_nonzero(window.new)),
         samples=int(np.diff(recording.start)[window.new].sum()),
-        violating=tuple(_ids_of(recording, found.pairs)),
+        violating=tuple(_ids_of(recording, disturbances.pairs)),
         triples=0 if cut is None else len(cut.triples),
         asked=tally.asked,
         undecided=tally.undecided,
         differing=tally.differing,
-        traces=tuple(_traces(recording, questions, found)),
-        matches=tuple(foretell(recording, questions, matches)),
+        traces=tuple(_traces(recording, questions, disturbances)),
+        matches=tuple(with_driver_labels(recording, questions, matches)),
         detections=detections,
         notes=recording.notes,
         sectors=tuple(x.name for x in questions.sectors),
-        seen=tuple(_see(recording, found, detections)) if len(recording.moments) else (),
+        seen=tuple(_seen_pairs(recording, disturbances, detections)) if len(recording.moments) else (),
         possible=tuple(dict.fromkeys(possible)),
     )
     # Boxes that overlap violate the RSS distance, so they are here; CommonRoad's are noted already.
-    return findings, () if len(recording.moments) else find_overlaps(recording, found.pairs)
+    return findings, () if len(recording.moments) else find_overlaps(recording, disturbances.pairs)
 
 
 def _ids_of(recording: Recording, pairs: Pairs) -> Iterator[tuple[int, int]]:
@@ -153,19 +162,21 @@ def _ids_of(recording: Recording, pairs: Pairs) -> Iterator[tuple[int, int]]:
         yield min(one, other), max(one, other)
 
 
-def _say_uncertain(matches: Sequence[Match]) -> Iterator[str]:
+def _note_on_uncertain(matches: Sequence[Match]) -> Iterator[str]:
     count = sum(match.uncertain for match in matches)
     if count:
         yield f"{count} of {len(matches)} matches depend on less than places along the road may be off"
 
 
-def _see(recording: Recording, found: Disturbances, detections: tuple[Detection, ...]) -> Iterator[FramePair]:
+def _seen_pairs(
+    recording: Recording, disturbances: Disturbances, detections: tuple[Detection, ...]
+) -> Iterator[FramePair]:
     ids = recording.vehicle_id
-    violating = set(zip(found.pairs.first.tolist(), found.pairs.second.tolist(), strict=True))
+    violating = set(zip(disturbances.pairs.first.tolist(), disturbances.pairs.second.tolist(), strict=True))
     place = {number: v for v, number in enumerate(ids.tolist())}
     detected = {(place[a], place[b]) for a, b in (x.pair for x in detections)}
     for first, second in sorted(violating | detected):
-        yield see_pair(recording, first, second, (first, second) in violating)
+        yield frame_pair(recording, first, second, (first, second) in violating)
 
 
 # What is counted in all windows together, and what is listed, each in which order.
@@ -182,7 +193,7 @@ _ORDERS: Mapping[str, Callable[[Any], Any] | None] = {
 
 @dataclass
 class _Tally:
-    questions: Questions
+    questions: EvaluationQuestions
     asked: int = 0
     undecided: int = 0
     differing: int = 0
@@ -190,41 +201,41 @@ class _Tally:
     def ask(
         self, monitor: Monitor[MonitorKey], seen: Observation, arises: Bools
     ) -> Mapping[MonitorKey, Bools]:
-        """For each question which traces, of those where danger ``arises``, satisfy it."""
+        """Return for each question which traces, of those where danger ``arises``, satisfy it."""
         convention = self.questions.settings.convention
         answers = monitor.evaluate(seen, convention).answers
         others = monitor.holds(seen, OTHER[convention])
         true = {}
-        for asked, answer in answers.items():
-            true[asked] = answer.true & arises
+        for key, answer in answers.items():
+            true[key] = answer.true & arises
             self.asked += int(np.count_nonzero(arises))
             self.undecided += int(np.count_nonzero(answer.undecided & arises))
-            self.differing += int(np.count_nonzero((answer.true != others[asked]) & arises))
+            self.differing += int(np.count_nonzero((answer.true != others[key]) & arises))
         return true
 
 
 def _match_pairs(
-    recording: Recording, questions: Questions, found: Disturbances, tally: _Tally
+    recording: Recording, questions: EvaluationQuestions, disturbances: Disturbances, tally: _Tally
 ) -> tuple[list[Match], list[PossibleMatch]]:
-    end = np.max(found.end, axis=0, initial=-1)
+    end = np.max(disturbances.end, axis=0, initial=-1)
     chosen = np.flatnonzero(end >= 0)
-    chosen = chosen[np.argsort(found.start[chosen] - end[chosen], kind="stable")]  # the longest first
+    chosen = chosen[np.argsort(disturbances.start[chosen] - end[chosen], kind="stable")]  # the longest first
     if not len(chosen) or not questions.pairs:
         return [], []
-    pairs, start = found.pairs.choose(chosen), found.start[chosen]
+    pairs, start = disturbances.pairs.choose(chosen), disturbances.start[chosen]
     vehicles = pairs.vehicles
     at = zip((LANE, OTHER_LANE), vehicles.values(), strict=True)
     lanes = {lane: _lane_at(recording, vehicle, start) for lane, vehicle in at}
-    ends = tuple(x[chosen] for x in found.end)
+    ends = tuple(x[chosen] for x in disturbances.end)
     return _ask_all(recording, questions, questions.pairs, vehicles, start, ends, lanes, tally)
 
 
-def _candidates(window: Window, questions: Questions, found: Disturbances) -> CutTriples:
+def _candidates(window: TimeWindow, questions: EvaluationQuestions, disturbances: Disturbances) -> CutTriples:
     """Triples in which danger arises and whose start allows a scenario of three cars."""
     recording = window.recording
-    triples = triples_of(recording, found.pairs, found.meeting)
+    triples = triples_of(recording, disturbances.pairs, disturbances.meeting)
     triples = triples.choose(window.has(triples.sv, triples.pov1, triples.pov2))
-    cut = cut_triples(questions, found, triples)
+    cut = cut_triples(questions, disturbances, triples)
     assert questions.triple_start is not None
     if not len(cut.triples):
         return cut
@@ -234,7 +245,9 @@ def _candidates(window: Window, questions: Questions, found: Disturbances) -> Cu
     return cut.choose(questions.triple_start.holds(batch)[START])
 
 
-def _match_triples(recording: Recording, questions: Questions, cut: CutTriples, tally: _Tally) -> list[Match]:
+def _match_triples(
+    recording: Recording, questions: EvaluationQuestions, cut: CutTriples, tally: _Tally
+) -> list[Match]:
     triples = cut.triples
     if not len(triples):
         return []
@@ -246,7 +259,7 @@ def _match_triples(recording: Recording, questions: Questions, cut: CutTriples, 
 
 def _ask_all(
     recording: Recording,
-    questions: Questions,
+    questions: EvaluationQuestions,
     monitors: tuple[Monitor[MonitorKey], ...],
     vehicles: Mapping[str, Integers],
     start: Integers,
@@ -254,15 +267,15 @@ def _ask_all(
     lanes: Mapping[str, Integers],
     tally: _Tally,
 ) -> tuple[list[Match], list[PossibleMatch]]:
-    """For each minDanger and question the traces that satisfy it, each cut at its own end.
+    """Return the traces that satisfy each question for each minDanger, each cut at its own end.
 
     On a measured road, for pairs also those that may, as places are off.
     """
     matches, possible = list[Match](), list[PossibleMatch]()
     last = np.max(ends, axis=0)
     signals = [signal for monitor in monitors for signal in monitor.signals]
-    asked_of = frozenset[Formula]().union(*(monitor.states for monitor in monitors))
-    atoms = {formula: atom for formula, atom in questions.lane_atoms.items() if formula in asked_of}
+    states = frozenset[Formula]().union(*(monitor.states for monitor in monitors))
+    atoms = {formula: atom for formula, atom in questions.lane_atoms.items() if formula in states}
     batch = gather(recording, vehicles, start, last, signals, lanes, atoms)
     seen: Observation | None = None
     for k, (monitor, end) in enumerate(zip(monitors, ends, strict=True)):
@@ -271,56 +284,60 @@ def _ask_all(
         lengths = np.where(arises, end - start + 1, batch.lengths)
         true = tally.ask(monitor, seen.cut(lengths), arises)
         convention, formulas = questions.settings.convention, monitor.formulas
-        there = TraceQuestions(formulas, vehicles, start, end, lanes, questions.lane_atoms, convention)
+        trace_questions = TraceQuestions(
+            formulas, vehicles, start, end, lanes, questions.lane_atoms, convention
+        )
         paired = len(vehicles) == len(PAIR)
-        bounds = _bounds(recording, there, arises if paired else np.logical_or.reduce([*true.values()]))
-        for asked, hit in true.items():
+        bounds = _bounds(
+            recording, trace_questions, arises if paired else np.logical_or.reduce([*true.values()])
+        )
+        for key, hit in true.items():
             hits = np.flatnonzero(hit)
-            uncertain = np.zeros(len(hits), np.bool_) if bounds is None else ~bounds[asked].surely[hits]
-            matches += _matches_of(recording, asked, there.choose(hits), k, uncertain)
+            uncertain = np.zeros(len(hits), np.bool_) if bounds is None else ~bounds[key].surely[hits]
+            matches += _matches_of(recording, key, trace_questions.choose(hits), k, uncertain)
             if bounds is not None and paired:
-                missed = np.flatnonzero(bounds[asked].perhaps & ~hit)
-                possible += _possible_of(recording, asked, there.choose(missed), k)
+                unmatched = np.flatnonzero(bounds[key].perhaps & ~hit)
+                possible += _possible_of(recording, key, trace_questions.choose(unmatched), k)
     return matches, possible
 
 
 def _bounds(
-    recording: Recording, there: TraceQuestions[MonitorKey], chosen: Bools
-) -> dict[MonitorKey, Bounds] | None:
+    recording: Recording, trace_questions: TraceQuestions[MonitorKey], chosen: Bools
+) -> dict[MonitorKey, TruthBounds] | None:
     """The bounds of the answers to all traces, false where not ``chosen``; None where places are exact."""
     if recording.slack is None:
         return None
-    made = {}
-    for asked, bound in bounds_of(recording, recording.slack, there.choose(chosen)).items():
-        made[asked] = Bounds(*np.zeros((2, len(chosen)), np.bool_))
-        made[asked].surely[chosen], made[asked].perhaps[chosen] = bound.surely, bound.perhaps
-    return made
+    bounds = {}
+    for key, bound in truth_bounds(recording, recording.slack, trace_questions.choose(chosen)).items():
+        bounds[key] = TruthBounds(*np.zeros((2, len(chosen)), np.bool_))
+        bounds[key].surely[chosen], bounds[key].perhaps[chosen] = bound.surely, bound.perhaps
+    return bounds
 
 
 def _matches_of(
     recording: Recording,
-    asked: MonitorKey,
-    there: TraceQuestions[MonitorKey],
+    key: MonitorKey,
+    trace_questions: TraceQuestions[MonitorKey],
     min_danger: int,
     uncertain: Bools,
 ) -> Iterator[Match]:
     """A match for each trace."""
-    vehicles = [recording.vehicle_id[index].tolist() for index in there.vehicles.values()]
-    sv, pov = vehicles[:2] if asked.sv == "first" else vehicles[1::-1]
+    vehicles = [recording.vehicle_id[index].tolist() for index in trace_questions.vehicles.values()]
+    sv, pov = vehicles[:2] if key.sv == "first" else vehicles[1::-1]
     pov2 = vehicles[2] if len(vehicles) > 2 else repeat(None)
     names = _lane_names(recording)
-    lanes = [names[lane] for lane in there.lanes[asked.lane].tolist()]
-    frames = there.low.tolist(), there.high.tolist()
-    question = map(repeat, (min_danger, asked.set_name, asked.number))
+    lanes = [names[lane] for lane in trace_questions.lanes[key.lane].tolist()]
+    frames = trace_questions.low.tolist(), trace_questions.high.tolist()
+    question = map(repeat, (min_danger, key.set_name, key.number))
     return map(Match, sv, pov, pov2, lanes, *frames, *question, uncertain.tolist())
 
 
 def _possible_of(
-    recording: Recording, asked: MonitorKey, there: TraceQuestions[MonitorKey], min_danger: int
+    recording: Recording, key: MonitorKey, trace_questions: TraceQuestions[MonitorKey], min_danger: int
 ) -> Iterator[PossibleMatch]:
     """A possible match for each trace, whichever of the two is SV."""
-    ids = (recording.vehicle_id[index].tolist() for index in there.vehicles.values())
-    return map(PossibleMatch, *ids, *map(repeat, (min_danger, asked.set_name, asked.number)))
+    ids = (recording.vehicle_id[index].tolist() for index in trace_questions.vehicles.values())
+    return map(PossibleMatch, *ids, *map(repeat, (min_danger, key.set_name, key.number)))
 
 
 def _lane_at(recording: Recording, vehicle: Integers, frame: Integers) -> Integers:
@@ -333,31 +350,33 @@ def _lane_names(recording: Recording) -> list[str]:
     return [*(lane.name for lane in recording.lanes), ""]
 
 
-def _traces(recording: Recording, questions: Questions, found: Disturbances) -> Iterator[Trace]:
-    known = np.flatnonzero(found.start != NEVER)
-    pairs, start = found.pairs.choose(known), found.start[known]
+def _traces(
+    recording: Recording, questions: EvaluationQuestions, disturbances: Disturbances
+) -> Iterator[DisturbanceTrace]:
+    known = np.flatnonzero(disturbances.start != NEVER)
+    pairs, start = disturbances.pairs.choose(known), disturbances.start[known]
     sectors = _sectors_at(recording, questions, pairs, start)
     names = _lane_names(recording)
     lanes = [_lane_at(recording, vehicle, start) for vehicle in (pairs.first, pairs.second)]
     columns = (recording.vehicle_id[pairs.first], recording.vehicle_id[pairs.second], start, *lanes)
-    ends = zip(*(x[known].tolist() for x in found.end), strict=True)
+    ends = zip(*(x[known].tolist() for x in disturbances.end), strict=True)
     for p, (row, each) in enumerate(zip(zip(*(x.tolist() for x in columns), strict=True), ends, strict=True)):
         first, second, frame, *at = row
         one, other = (names[lane] for lane in at)
         within = tuple(name for name, there in sectors.items() if there[p])
         for k, end in enumerate(each):
             if end >= 0:
-                yield Trace(first, second, k, frame, end, one, other, within)
+                yield DisturbanceTrace(first, second, k, frame, end, one, other, within)
 
 
 def _sectors_at(
-    recording: Recording, questions: Questions, pairs: Pairs, frame: Integers
+    recording: Recording, questions: EvaluationQuestions, pairs: Pairs, frame: Integers
 ) -> dict[str, Bools]:
-    """For each road sector that can be met which of the pairs are in it at ``frame``."""
+    """Return for each road sector of the road which of the pairs are in it at ``frame``."""
     everywhere = np.ones(len(pairs), bool)
     if not len(pairs):
         return {x.name: everywhere for x in questions.sectors}
-    asked = questions.where
-    batch = gather(recording, pairs.vehicles, frame, frame, asked.signals, None, questions.lane_atoms)
-    inside = asked.holds(batch)
+    monitor = questions.where
+    batch = gather(recording, pairs.vehicles, frame, frame, monitor.signals, None, questions.lane_atoms)
+    inside = monitor.holds(batch)
     return {x.name: inside.get(x, everywhere) for x in questions.sectors}

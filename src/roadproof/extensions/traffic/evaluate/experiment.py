@@ -10,14 +10,18 @@ from pathlib import Path
 from roadproof.errors import InputError, SharedError
 from roadproof.extensions.traffic.evaluate import results
 from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_windows
-from roadproof.extensions.traffic.evaluate.questions import Questions, Settings, ask
+from roadproof.extensions.traffic.evaluate.questions import (
+    EvaluationQuestions,
+    EvaluationSettings,
+    compile_questions,
+)
 from roadproof.extensions.traffic.evaluate.totals import Totals
 from roadproof.extensions.traffic.formats.clock import Rate
 from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.extensions.traffic.formats.source import RecordingSource
 from roadproof.extensions.traffic.formats.sources import copies_among, find_sources
-from roadproof.extensions.traffic.formats.windows import WindowedRecording
-from roadproof.runtime.dispatch import answers_of
+from roadproof.extensions.traffic.formats.windows import TimeWindow, WindowedRecording
+from roadproof.runtime.dispatch import run_jobs
 from roadproof.runtime.executors import Executor, LostJob, is_fork_unsafe
 from roadproof.runtime.memory import keep_freed_memory
 from roadproof.runtime.worker import is_worker
@@ -25,14 +29,14 @@ from roadproof.runtime.worker import is_worker
 
 @dataclass(frozen=True)
 class Experiment:
-    """Where the recordings are, where results go, and what is asked.
+    """The folders of recordings and of results, and the settings of an evaluation.
 
     ``strict``: no vehicle is left out of a recording. ``road``: of a map, for recordings without their own.
     """
 
     recordings: Path
     out: Path
-    settings: Settings
+    settings: EvaluationSettings
     hands: Executor = field(default_factory=lambda: Executor(1))
     keep_going: bool = False
     strict: bool = False
@@ -69,9 +73,9 @@ def run_experiment(
     shard = experiment.hands.shard
     if shard is not None:
         sources = tuple(shard.among(sources))
-    question = results.question_mark(experiment.settings)
+    question = results.question_digest(experiment.settings)
     digests = _digests(sources, experiment.hands)
-    more = ["strict"] * experiment.strict
+    more = ("strict",) * experiment.strict
     marks = {name: results.fingerprint(question, [*each, *more]) for name, each in digests.items()}
     failed = copies_among(sources, digests)
     waiting = [
@@ -79,9 +83,9 @@ def run_experiment(
         for x in sources
         if x.name not in failed and not results.is_saved(_path(experiment.out, x), marks[x.name])
     ]
-    kept = len(sources) - len(failed) - len(waiting)
-    if kept:
-        tell(f"{kept} of {len(sources)} recordings are already evaluated")
+    already_done = len(sources) - len(failed) - len(waiting)
+    if already_done:
+        tell(f"{already_done} of {len(sources)} recordings are already evaluated")
     for copy in failed.values():
         if not experiment.keep_going:
             raise InputError(copy)
@@ -108,10 +112,10 @@ def run_experiment(
 
     def findings() -> Iterator[Findings]:
         for source in (x for x in sources if x.name not in failed):
-            found = _known(experiment, source, marks[source.name])
-            if found is None:
+            stored = _known(experiment, source, marks[source.name])
+            if stored is None:
                 raise InputError(f"recording {source.name}: its results changed while they were used")
-            yield found
+            yield stored
 
     in_order = {source.name: failed[source.name] for source in sources if source.name in failed}
     totals = results.write_results(experiment.out, experiment.settings, findings(), in_order)
@@ -121,12 +125,12 @@ def run_experiment(
 def saved_findings(
     experiment: Experiment, outcome: ExperimentOutcome
 ) -> Iterator[tuple[RecordingSource, Findings]]:
-    """What an experiment that is done has saved of each recording, in order."""
+    """Yield the saved findings of each recording of a finished experiment, in order."""
     for source in experiment.sources():
         if source.name in outcome.marks and source.name not in outcome.failed:
-            found = _known(experiment, source, outcome.marks[source.name])
-            if found is not None:
-                yield source, found
+            stored = _known(experiment, source, outcome.marks[source.name])
+            if stored is not None:
+                yield source, stored
 
 
 def _path(out: Path, source: RecordingSource) -> Path:
@@ -137,45 +141,59 @@ def _known(experiment: Experiment, source: RecordingSource, mark: str) -> Findin
     return results.load_findings(_path(experiment.out, source), mark)
 
 
-def _digests(sources: Sequence[RecordingSource], hands: Executor) -> dict[str, list[str]]:
+def _digests(sources: Sequence[RecordingSource], executor: Executor) -> dict[str, list[str]]:
     """The digests of the files of each recording by its name: the workers of a cluster read them, or we."""
-    if hands.cluster is None:
-        with ThreadPoolExecutor(hands.processes or os.cpu_count() or 1) as threads:
-            found = list(threads.map(RecordingSource.digests, sources))
+    if executor.cluster is None:
+        with ThreadPoolExecutor(executor.processes or os.cpu_count() or 1) as threads:
+            digests = list(threads.map(RecordingSource.digests, sources))
     else:
-        told = dict(answers_of(RecordingSource.digests, sources, hands))
-        answers = (told[place] for place in range(len(sources)))
-        found = [s.digests() if isinstance(x, LostJob) else x for s, x in zip(sources, answers, strict=True)]
-    return {source.name: each for source, each in zip(sources, found, strict=True)}
+        by_place = dict(run_jobs(RecordingSource.digests, sources, executor))
+        answers = (by_place[place] for place in range(len(sources)))
+        digests = [
+            s.digests() if isinstance(x, LostJob) else x for s, x in zip(sources, answers, strict=True)
+        ]
+    return {source.name: each for source, each in zip(sources, digests, strict=True)}
 
 
 def _evaluate_all(
     experiment: Experiment, question: str, marks: Mapping[str, str], sources: list[RecordingSource]
 ) -> Iterator[tuple[RecordingSource, str | LostJob | None]]:
     """Evaluate and save each; the second part is why a recording could not be used."""
-    jobs = [_Job(experiment.settings, question, experiment.out, s, marks[s.name]) for s in sources]
-    hands = experiment.hands
-    if (hands.cluster is None and hands.processes == 1) or len(sources) < 2:
+    jobs = [_RecordingJob(experiment.settings, question, experiment.out, s, marks[s.name]) for s in sources]
+    executor = experiment.hands
+    if (executor.cluster is None and executor.processes == 1) or len(sources) < 2:
         for job in jobs:
             yield job.source, _evaluate(job)
         return
-    with closing(answers_of(_evaluate, jobs, hands, fresh=is_fork_unsafe())) as answers:
+    with closing(run_jobs(_evaluate, jobs, executor, fresh=is_fork_unsafe())) as answers:
         for place, error in answers:
             yield sources[place], error
 
 
 @dataclass(frozen=True)
-class _Job:
+class _RecordingJob:
     """One recording to evaluate: ``question`` marks the settings, ``mark`` the results."""
 
-    settings: Settings
+    settings: EvaluationSettings
     question: str
     out: Path
     source: RecordingSource
     mark: str
 
 
-def _evaluate(job: _Job) -> str | None:
+class _UnreadableWindowError(InputError):
+    """A window that cannot be read, with the message of the reader, which begins with the file."""
+
+
+def _read_windows(recording: WindowedRecording) -> Iterator[TimeWindow]:
+    """Yield the windows of a recording. Raises ``_UnreadableWindowError``."""
+    try:
+        yield from recording.windows()
+    except InputError as error:
+        raise _UnreadableWindowError(str(error)) from error
+
+
+def _evaluate(job: _RecordingJob) -> str | None:
     """Read, evaluate and save; why the recording cannot be used, where it is the files' fault."""
     if is_worker():
         keep_freed_memory()
@@ -188,28 +206,31 @@ def _evaluate(job: _Job) -> str | None:
     except InputError as error:
         return f"{job.source.place_of_rate(divided.rate)}: {error}"
     try:
-        findings = evaluate_windows(divided.windows(), questions)
+        findings = evaluate_windows(_read_windows(divided), questions)
+    except _UnreadableWindowError as error:
+        return str(error)
     except InputError as error:
-        told, file = str(error), str(job.source.files[-1])
-        return told if told.startswith(file) else f"{file}: {told}"
+        return f"{job.source.files[-1]}: {error}"
     except Exception as error:
         raise RuntimeError(f"recording {job.source.name}: {type(error).__name__}: {error}") from error
     results.save_findings(_path(job.out, job.source), findings, job.mark)
     return None
 
 
-_MOST_ASKED = 4
-_asked: dict[tuple[str, Rate, tuple[str, ...]], Questions] = {}
+_MOST_COMPILED = 4
+_compiled: dict[tuple[str, Rate, tuple[str, ...]], EvaluationQuestions] = {}
 
 
-def questions_for(settings: Settings, question: str, recording: Recording | WindowedRecording) -> Questions:
+def questions_for(
+    settings: EvaluationSettings, question: str, recording: Recording | WindowedRecording
+) -> EvaluationQuestions:
     """Compiled once a process for recordings of one rate and the same zones.
 
     ``question`` is the settings' mark, which tells settings apart, as they come as copies.
     """
     key = question, recording.rate, recording.zone_names
-    if key not in _asked:
-        if len(_asked) >= _MOST_ASKED:
-            _asked.clear()
-        _asked[key] = ask(settings, recording.rate, recording.zone_names)
-    return _asked[key]
+    if key not in _compiled:
+        if len(_compiled) >= _MOST_COMPILED:
+            _compiled.clear()
+        _compiled[key] = compile_questions(settings, recording.rate, recording.zone_names)
+    return _compiled[key]

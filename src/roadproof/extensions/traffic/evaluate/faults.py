@@ -17,8 +17,8 @@ _ASIDE = 0.1
 
 def faults_of(trace: OneTrace) -> tuple[str, ...]:
     """Return the first fault of each kind of each vehicle and pair, in words."""
-    found = [x for name in trace.lanes for x in _jumps(trace, name)]
-    return (*found, *(x for pair in combinations(trace.lanes, 2) for x in _passes(trace, *pair)))
+    jumps = [x for name in trace.lanes for x in _jumps(trace, name)]
+    return (*jumps, *(x for pair in combinations(trace.lanes, 2) for x in _passes(trace, *pair)))
 
 
 def _column(trace: OneTrace, signal: str, name: str) -> Array:

@@ -1,4 +1,4 @@
-"""What a formula is on one trace: verdict, margin, and when each named part of it is true."""
+"""The result of a formula on one trace: verdict, margin, and when each named part is true."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -8,26 +8,26 @@ from typing import TypeAlias
 import numpy as np
 
 from roadproof.extensions.traffic.answers.monitor import Truth, View
+from roadproof.extensions.traffic.evaluate.robust import robustness
 from roadproof.extensions.traffic.formats.recording import BACKWARDS, Bools
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Application, Formula, nesting
 from roadproof.logic.rewrite import signal_degree, terms_of
-from roadproof.semantics.exact.algebraic import approximate
-from roadproof.semantics.exact.exact import judge
-from roadproof.semantics.exact.robust import agreeing, robustness
+from roadproof.semantics.exact.algebraic import as_float
+from roadproof.semantics.exact.judging import judge
 from roadproof.semantics.exact.truth import TruthSet
 from roadproof.semantics.sampled.answers import Convention, Margin, TruthArrays
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.drive import Drive
 
-_ASKED = "asked"
+_FORMULA = "asked"
 Spans: TypeAlias = tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True)
-class Strip:
-    """When a part is true, and when that depends on what comes after the trace; seconds, ends included.
+class TruthStrip:
+    """The times (s, ends included) at which a part is true, or depends on what comes after the trace.
 
     ``exact`` tells the same with open and closed ends where the view is dense; ``depth``: in how many others
     the part is. ``margins``: at each sample, None where it depends on what comes later or lanes alone decide.
@@ -42,7 +42,7 @@ class Strip:
 
 
 @dataclass(frozen=True)
-class FirstAnswer:
+class MonitorResult:
     """An answer at the first sample (time 0). ``margin`` bounds the robustness; infinite where only
     lanes decide. ``other`` is the answer under the other convention for the end of a trace."""
 
@@ -52,47 +52,51 @@ class FirstAnswer:
     margin: tuple[float, float]
     seconds: float
     dt: Fraction
-    strips: tuple[Strip, ...]
+    strips: tuple[TruthStrip, ...]
     convention: Convention | None = None
     other: Truth | None = None
 
     @property
     def decides(self) -> bool:
-        """Whether the margin has a sign whatever comes after the trace, which is then that of the verdict."""
+        """Return whether the margin has a sign whatever comes after the trace, which is then that of the
+        verdict.
+        """
         low, high = self.margin
         return low > 0 or high < 0
 
 
-def observe_samples(text: str, formula: Formula, batch: Batch, convention: Convention) -> FirstAnswer:
+def observe_samples(text: str, formula: Formula, batch: Batch, convention: Convention) -> MonitorResult:
     """The monitor's answer on the one trace of ``batch``. Raises ``InputError``."""
-    monitor = compile({_ASKED: formula})
+    monitor = compile({_FORMULA: formula})
     other: Convention = "clip" if convention == "truncated" else "truncated"
     seen = monitor.observe(batch)
     verdicts = monitor.evaluate(seen, convention, named=True)
     margins = monitor.measure(batch, convention, at="all", named=True)
-    margin = margins.margins[_ASKED]
+    margin = margins.margins[_FORMULA]
     dt = float(batch.dt)
-    spans = _spans(monitor.evaluate(seen, convention, at="all").answers[_ASKED], dt)
+    spans = _spans(monitor.evaluate(seen, convention, at="all").answers[_FORMULA], dt)
     depths = _depths(formula)
     strips = (
-        Strip(name_of(part), *_spans(truth, dt), "", depths[part], _sampled(margins.named[part]))
+        TruthStrip(name_of(part), *_spans(truth, dt), "", depths[part], _sampled(margins.named[part]))
         for part, truth in verdicts.named.items()
         if part != formula
     )
-    return FirstAnswer(
+    return MonitorResult(
         text,
         "recorded",
-        _said(verdicts.answers[_ASKED]),
+        _truth_of(verdicts.answers[_FORMULA]),
         (float(margin.low[0, 0]), float(margin.high[0, 0])),
         float((batch.samples - 1) * batch.dt),
         batch.dt,
-        (Strip(text, *spans, margins=_sampled(margin)), *strips),
+        (TruthStrip(text, *spans, margins=_sampled(margin)), *strips),
         convention,
-        _said(monitor.evaluate(seen, other).answers[_ASKED]),
+        _truth_of(monitor.evaluate(seen, other).answers[_FORMULA]),
     )
 
 
-def observe_drive(text: str, formula: Formula, drive: Drive, horizon: Fraction, dt: Fraction) -> FirstAnswer:
+def observe_drive(
+    text: str, formula: Formula, drive: Drive, horizon: Fraction, dt: Fraction
+) -> MonitorResult:
     """The exact judge's answer on a drive, in dense and unbounded time; the margin is on the grid of dt, and
     0 where its sign there is not that of the verdict.
 
@@ -100,18 +104,16 @@ def observe_drive(text: str, formula: Formula, drive: Drive, horizon: Fraction, 
     """
     judgement = judge(formula, drive)
     sampled = robustness(formula, drive, dt, int(horizon / dt) * dt).value
-    margin = agreeing(sampled, judgement.holds)
+    margin = clamped_to_verdict(sampled, judgement.holds)
     strips = [_exact_strip(text, judgement.truth(formula))]
     depths = _depths(formula)
     named = [(part, truth) for part, truth in judgement.named() if part != formula]
     strips += [replace(_exact_strip(name_of(part), truth), depth=depths[part]) for part, truth in named]
     verdict: Truth = "true" if judgement.holds else "false"
-    return FirstAnswer(text, "dense", verdict, (margin, margin), float(horizon), dt, tuple(strips))
+    return MonitorResult(text, "dense", verdict, (margin, margin), float(horizon), dt, tuple(strips))
 
 
-def answer_where_they_stand(
-    text: str, formula: Formula, batch: Batch, convention: Convention
-) -> tuple[str, ...]:
+def note_on_standing(text: str, formula: Formula, batch: Batch, convention: Convention) -> tuple[str, ...]:
     """A note with the answer where no speed along the road is below 0, if a vehicle drives backwards and that
     answer is another.
 
@@ -123,16 +125,18 @@ def answer_where_they_stand(
     if not any(x[:within, 0].min() < BACKWARDS for x in speeds.values()) or not _squares_speeds(formula):
         return ()
     stopped = {key: np.maximum(x, 0) for key, x in speeds.items()}
-    monitor = compile({_ASKED: formula})
+    monitor = compile({_FORMULA: formula})
     before, after = (
-        _said(monitor.evaluate(one, convention).answers[_ASKED])
+        _truth_of(monitor.evaluate(one, convention).answers[_FORMULA])
         for one in (batch, replace(batch, signals={**batch.signals, **stopped}))
     )
     return () if before == after else (f"with speeds below 0 taken as 0 m/s, {text}: {after}",)
 
 
 def _squares_speeds(formula: Formula) -> bool:
-    """Whether it compares a term in which a speed along the road is squared, or multiplied by a signal."""
+    """Return whether it compares a term in which a speed along the road is squared, or multiplied by a
+    signal.
+    """
     return any(
         isinstance(part, t.Power | t.Product)
         and (signal_degree(part) or 0) > 1
@@ -155,7 +159,7 @@ def name_of(part: Application) -> str:
 
 def margins_of(formula: Formula, batch: Batch) -> tuple[float | None, ...]:
     """The margin of a formula at each sample of the one trace of ``batch``. Raises ``InputError``."""
-    return _sampled(compile({_ASKED: formula}).measure(batch, "clip", at="all").margins[_ASKED])
+    return _sampled(compile({_FORMULA: formula}).measure(batch, "clip", at="all").margins[_FORMULA])
 
 
 def _sampled(margin: Margin) -> tuple[float | None, ...]:
@@ -164,7 +168,7 @@ def _sampled(margin: Margin) -> tuple[float | None, ...]:
 
 
 def _depths(formula: Formula) -> dict[Application, int]:
-    """In how many others each part is, below the formula as a whole."""
+    """Return in how many others each part is, below the formula as a whole."""
     below = 0 if isinstance(formula, Application) else 1
     return {part: depth + below for part, depth in nesting(formula).items()}
 
@@ -183,13 +187,22 @@ def _runs(truth: Bools, dt: float) -> Spans:
     )
 
 
-def _exact_strip(name: str, truth: TruthSet) -> Strip:
+def _exact_strip(name: str, truth: TruthSet) -> TruthStrip:
     spans = tuple(
-        (approximate(span.begin.point), float("inf") if span.end is None else approximate(span.end.point))
+        (as_float(span.begin.point), float("inf") if span.end is None else as_float(span.end.point))
         for span in truth.spans()
     )
-    return Strip(name, spans, (), str(truth))
+    return TruthStrip(name, spans, (), str(truth))
 
 
-def _said(answer: TruthArrays) -> Truth:
+def _truth_of(answer: TruthArrays) -> Truth:
     return "true" if answer.true[0] else "false" if answer.false[0] else "undecided"
+
+
+def clamped_to_verdict(margin: float, holds: bool) -> float:
+    """Return a sampled margin, cut off at 0 where the judge contradicts its sign.
+
+    In dense time the margin of a true formula is not below 0, and that of a false one not above: samples miss
+    events between them, and the first instant that an open condition lacks.
+    """
+    return max(margin, 0.0) if holds else min(margin, 0.0)

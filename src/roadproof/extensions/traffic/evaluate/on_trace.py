@@ -1,4 +1,4 @@
-"""What becomes of one trace when driver models drive SV: those asked for, and those that a formula names.
+"""The results of one trace when driver models drive SV: requested models, and those that a formula names.
 
 A formula such as ``unpreventable_cutIn_careful(SV, POV)`` speaks of a state, from which POV goes on as it
 begins. What a driver does in the trace is decided by the model that is put into it, as in ``catalogue`` and
@@ -14,11 +14,11 @@ from roadproof.extensions.drivers.verdict import DriverVerdict
 from roadproof.extensions.traffic.evaluate.decisions import (
     Decision,
     Drivers,
-    course_of,
     decide_drive,
     decide_trace,
-    drivers_in,
-    said,
+    decision_text,
+    driver_models,
+    manoeuvre_of,
 )
 from roadproof.extensions.traffic.evaluate.one_trace import OneTrace
 from roadproof.frontends.api.definitions import Definitions
@@ -35,7 +35,7 @@ _BOUNDARIES = {
 
 
 @dataclass(frozen=True)
-class Cast:
+class ScenarioCast:
     """The vehicles of a scenario by name, SV first, and the driver models that are put into it."""
 
     scenario: str
@@ -43,46 +43,53 @@ class Cast:
     models: tuple[str, ...]
 
 
-def casts_of(home: Definitions, query: Query, number: int | None, models: tuple[str, ...]) -> list[Cast]:
+def scenario_casts(
+    definitions: Definitions, query: Query, number: int | None, models: tuple[str, ...]
+) -> list[ScenarioCast]:
     """Return what is asked of driver models: of the scenario ``number``, and of states that a formula names.
 
     Raises ``UsageError`` for models that say nothing of the scenario.
     """
-    found: dict[Cast, None] = {}
+    casts: dict[ScenarioCast, None] = {}
     for model in models:
         check_driver(model, f"drivers={','.join(models)}")
         check_courses(model, () if number is None else (number,), f"drivers={','.join(models)}")
     if number is not None and models:
-        vehicles = vehicles_of(home.specification, Scenario(number, home.specification.set_name))
-        found[Cast(name_of(number), vehicles, models)] = None
+        vehicles = vehicles_of(
+            definitions.specification, Scenario(number, definitions.specification.set_name)
+        )
+        casts[ScenarioCast(name_of(number), vehicles, models)] = None
     for part in subformulas(query.formula):
         if isinstance(part, Application) and part.name.partition("@")[0] in _BOUNDARIES:
             scenario, model = _BOUNDARIES[part.name.partition("@")[0]]
-            found[Cast(scenario, part.arguments, (model,))] = None
-    return [*found]
+            casts[ScenarioCast(scenario, part.arguments, (model,))] = None
+    return [*casts]
 
 
 def decisions_on(
-    trace: DriveFile | OneTrace, casts: list[Cast], home: Definitions, values: Mapping[str, Fraction]
+    trace: DriveFile | OneTrace,
+    casts: list[ScenarioCast],
+    definitions: Definitions,
+    values: Mapping[str, Fraction],
 ) -> Iterator[Decision]:
     """Yield what becomes of a trace from its start on; its vehicles are called as in the formula."""
     for cast in casts:
-        drivers = drivers_of(home, cast.models)
+        drivers = driver_models_of(definitions, cast.models)
         assert drivers is not None
         drivers = Drivers(drivers.specification, {**drivers.values, **values}, drivers.models)
-        assert course_of(cast.scenario) is not None
+        assert manoeuvre_of(cast.scenario) is not None
         if isinstance(trace, DriveFile):
             yield from decide_drive(trace, drivers, cast.scenario, cast.vehicles, 0.0)
         else:
             yield from decide_trace(trace, drivers, cast.scenario, cast.vehicles, 0.0, cast.vehicles)
 
 
-def drivers_of(home: Definitions, names: tuple[str, ...]) -> Drivers | None:
+def driver_models_of(definitions: Definitions, names: tuple[str, ...]) -> Drivers | None:
     """Driver models to be asked, in definitions on top of which ``driver.spec`` is read; None for no names.
 
     Raises ``InputError``, ``UsageError``.
     """
-    return drivers_in(home.specification.in_set(home.sets[0]), home.values, names)
+    return driver_models(definitions.specification.in_set(definitions.sets[0]), definitions.values, names)
 
 
 def driver_lines(decisions: tuple[Decision, ...]) -> Iterator[str]:
@@ -90,10 +97,10 @@ def driver_lines(decisions: tuple[Decision, ...]) -> Iterator[str]:
     if decisions:
         yield "driver models in place of SV, in the trace's own motion from its start on:"
     for x in decisions:
-        yield f"  {x.driver}, {x.scenario}: {said(x)}" + (f"; {x.reason}" if x.reason else "")
+        yield f"  {x.driver}, {x.scenario}: {decision_text(x)}" + (f"; {x.reason}" if x.reason else "")
 
 
-def as_kept(decision: Decision) -> DriverVerdict:
+def driver_verdict(decision: Decision) -> DriverVerdict:
     """Return a decision as an answer has it."""
     fields = {name: value for name, value in vars(decision).items() if name != "driven"}
     return DriverVerdict(**fields)

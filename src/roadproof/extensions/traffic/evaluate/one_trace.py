@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.extension import entries, imported
+from roadproof.extension import entries, import_entry
+from roadproof.extensions.traffic.evaluate.robust import MOST_SAMPLES
 from roadproof.extensions.traffic.evaluate.traces import KIND, by_vehicle, gather_one, refuse_missing
 from roadproof.extensions.traffic.formats import samples
 from roadproof.extensions.traffic.formats.recording import (
@@ -26,22 +27,21 @@ from roadproof.extensions.traffic.formats.recording import (
 )
 from roadproof.extensions.traffic.formats.source import ReadTrace, beside
 from roadproof.extensions.traffic.formats.sources import find_source, has_numbers
-from roadproof.extensions.traffic.formats.straight import of_road, whole
-from roadproof.extensions.traffic.formats.table import Column, Table
+from roadproof.extensions.traffic.formats.straight import as_lanelet, of_road
+from roadproof.extensions.traffic.formats.table import Column, ColumnTable
 from roadproof.library.bind import occupies
 from roadproof.library.roles import Roles
 from roadproof.library.scenarios import roles
-from roadproof.logic.custom_names import code_of, own_of
+from roadproof.logic.custom_names import code_of, custom_signals_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import signals_of, with_values
-from roadproof.semantics.exact.robust import MOST_SAMPLES
 from roadproof.semantics.sampled.batch import Array, Batch
 from roadproof.world.drive import Drive, value_at
 from roadproof.world.models import load_recorded_road, load_road
 from roadproof.world.motion import states_at
+from roadproof.world.not_read import left_out_in, road_not_read_note
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.signals import FIXED, RECORDED, SIGNALS, SIZES, SignalName, SizeName
-from roadproof.world.unread import left_out_in, unread_of_road
 
 _PAIR = re.compile(r"(?P<path>.+):(?P<ids>\d{1,9}(?:,\d{1,9}){0,2})")
 
@@ -66,7 +66,7 @@ class OneTrace:
 
 
 def is_pair(text: str) -> bool:
-    """Whether ``text`` names vehicles of a recording, as ``highd/01_tracks.csv:12,15`` does."""
+    """Return whether ``text`` names vehicles of a recording, as ``highd/01_tracks.csv:12,15`` does."""
     return _PAIR.fullmatch(text) is not None
 
 
@@ -101,7 +101,7 @@ def read_vehicles(
     strict: bool = False,
     road: str | None = None,
 ) -> OneTrace:
-    """As ``read_pair``, the vehicles of a recording by the role that each plays; ``text`` names the trace."""
+    """Return the trace of recorded vehicles, given by role (see ``read_pair``); ``text`` names the trace."""
     if road is None and is_samples_alone(path):
         road = USUAL_ROAD
     recording = find_source(path, strict, road).read()
@@ -110,13 +110,13 @@ def read_vehicles(
         raise InputError(f"{text}: the vehicles drive in different directions; name some of one direction")
     low = max(int(recording.first_frame[v]) for v in index)
     high = min(int(recording.last_frame[v]) for v in index)
-    wanted = (low if frames[0] is None else frames[0], high if frames[1] is None else frames[1])
-    if low > high or not low <= wanted[0] <= wanted[1] <= high:
+    span = (low if frames[0] is None else frames[0], high if frames[1] is None else frames[1])
+    if low > high or not low <= span[0] <= span[1] <= high:
         have = f"they share the frames {low} to {high}" if low <= high else "they share no frame"
-        raise InputError(f"{text}, frames {wanted[0]} to {wanted[1]}: {have}")
-    made = cut_trace(recording, text, dict(zip(by_role, index, strict=True)), wanted)
+        raise InputError(f"{text}, frames {span[0]} to {span[1]}: {have}")
+    trace = cut_trace(recording, text, dict(zip(by_role, index, strict=True)), span)
     names = {role: str(number) for role, number in by_role.items()}
-    return replace(made, notes=(*made.notes, *_overlaps(made), *backwards(made)), names=names)
+    return replace(trace, notes=(*trace.notes, *_overlaps(trace), *backwards(trace)), names=names)
 
 
 USUAL_ROAD = "main-2"
@@ -124,7 +124,7 @@ USUAL_ROAD = "main-2"
 
 
 def is_samples_alone(path: Path) -> bool:
-    """Whether a file is a table of samples without a road beside it."""
+    """Return whether a file is a table of samples without a road beside it."""
     is_table = path.suffix == ".parquet" or (path.suffix == ".csv" and not has_numbers(path))
     return is_table and not path.name.endswith(samples.CONVERTED) and not beside(path, samples.ROAD_ENDING)
 
@@ -133,12 +133,12 @@ def play_samples(trace: OneTrace, roles: Roles) -> OneTrace:
     """Samples with their vehicles called as their roles; nothing but signals is given of them."""
     if not roles.by_name:
         return trace
-    called, batch = roles.called, trace.batch
+    called, batch = roles.role_of, trace.batch
     signals = {(signal, called(name)): x for (signal, name), x in batch.signals.items()}
     sizes = {(size, called(name)): x for (size, name), x in batch.sizes.items()}
     lanes = {called(name): lane for name, lane in trace.lanes.items()}
     played = replace(batch, signals=signals, sizes=sizes, given={})
-    return replace(trace, batch=played, lanes=lanes, names=roles.own_names)
+    return replace(trace, batch=played, lanes=lanes, names=roles.name_by_role)
 
 
 def _overlaps(trace: OneTrace) -> Iterator[str]:
@@ -171,8 +171,8 @@ def _find(recording: Recording, number: int, text: str) -> int:
     place = np.flatnonzero(recording.vehicle_id == number)
     if not len(place):
         known = f"{recording.vehicle_id.min()} to {recording.vehicle_id.max()}"
-        told = f"recording {recording.name} has no vehicle {number}; ids are {known}"
-        raise with_causes(InputError(f"{text}: {told}"), left_out_in(recording.notes))
+        reason = f"recording {recording.name} has no vehicle {number}; ids are {known}"
+        raise with_causes(InputError(f"{text}: {reason}"), left_out_in(recording.notes))
     return int(place[0])
 
 
@@ -202,7 +202,7 @@ def cut_trace(
             given[with_values(occupies(name, lanelet), {})] = inside[:, None]
         at = int(recording.lane[begin])
         lanes[name] = recording.lanes[at].name if at >= 0 else ""
-        for column, values in recording.own.items():
+        for column, values in recording.custom_signals.items():
             own.setdefault(column, {})[name] = values[rows, None]
     signals = {**made.signals, **dict(by_vehicle(own))}
     batch = Batch(made.dt, made.lengths, signals, made.sizes, given, source)
@@ -218,7 +218,7 @@ def _lanelets(recording: Recording, way: int, rows: slice) -> Iterator[tuple[Lan
             yield lanelet, recording.inside[rows, j]
     for k, lane in enumerate(recording.lanes if not recording.lanelets else ()):
         if lane.direction == way:
-            yield whole(lane), (recording.occupancy[rows] >> np.uint32(k)) & 1 != 0
+            yield as_lanelet(lane), (recording.occupancy[rows] >> np.uint32(k)) & 1 != 0
 
 
 def road_of(recording: Recording, way: int) -> Road:
@@ -250,7 +250,7 @@ def sample_drive(drive: Drive, road: Road, horizon: Fraction, dt: Fraction, sour
     }
     kinds = {n: m.kind for n, m in drive.vehicles.items() if m.kind is not None}
     sizes |= {(KIND, name): float(code_of(kind)) for name, kind in kinds.items()}
-    columns |= {key: [float(value_at(course, time)) for time in times] for key, course in drive.own.items()}
+    columns |= {key: [float(value_at(x, time)) for time in times] for key, x in drive.custom_signals.items()}
     return _one_trace(source, dt, columns, sizes, road, "0 s")
 
 
@@ -262,7 +262,9 @@ def refuse_unmeasured(trace: OneTrace, formula: Formula) -> None:
                 f"{trace.source}: no recording has the signal {name}, which the formula needs: ask that of a "
                 "drive"
             )
-    refuse_missing(((x.name, x.vehicle) for x in own_of([formula])), trace.batch.signals, trace.source)
+    refuse_missing(
+        ((x.name, x.vehicle) for x in custom_signals_of([formula])), trace.batch.signals, trace.source
+    )
 
 
 def read_samples(path: Path, road: Road | None = None, strict: bool = False) -> OneTrace:
@@ -274,31 +276,31 @@ def read_samples(path: Path, road: Road | None = None, strict: bool = False) -> 
     """
     own = entries("traces")
     if path.suffix in own:
-        read: ReadTrace = imported(own[path.suffix])
+        read: ReadTrace = import_entry(own[path.suffix])
         scenario = read(path, strict)
         table, road, notes = scenario.table, road or scenario.road, (*scenario.otherwise, *scenario.faults)
         computed, faults = scenario.computed, scenario.faults
     else:
         table, computed, faults = samples.read_columns(path), False, ()
-        notes = samples.unread_of(table, strict)
+        notes = samples.ignored_column_notes(table, strict)
     if road is None:
         known = beside(path, samples.ROAD_ENDING)
         road = load_recorded_road(known[0])[0] if known else load_road(USUAL_ROAD)
     if path.suffix not in own:
-        notes += unread_of_road(road, strict)
+        notes += road_not_read_note(road, strict)
     lists = {name: values.tolist() for name, values in table.columns.items()}
     try:
-        made = of_columns(lists, road, str(path))
+        trace = of_columns(lists, road, str(path))
     except InputError as error:
         raise with_causes(error, notes) from None
-    doubts = samples.doubts_in(table, of_road(road, samples.DIRECTION, path), computed)
-    return replace(made, notes=(*notes, *doubts, *_overlaps(made), *made.notes), faults=faults)
+    contradictions = samples.contradictions_in(table, of_road(road, samples.DIRECTION, path), computed)
+    return replace(trace, notes=(*notes, *contradictions, *_overlaps(trace), *trace.notes), faults=faults)
 
 
 def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str = "columns") -> OneTrace:
     """The trace of columns named as in ``HEADER``: arrays, or a frame with such columns, in any order.
 
-    There may be ``kind``, a class that makes every vehicle a car where it is missing, and own signals.
+    There may be ``kind``, a class that makes every vehicle a car where it is missing, and custom signals.
     Times are numbers of seconds, taken as the decimals that they are shown as (nine places). Raises
     ``InputError`` with column, row, value and rule.
     """
@@ -309,35 +311,35 @@ def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str 
         )
     rows = len(list(columns[samples.HEADER[0]]))
     sized = {name: x for name, x in columns.items() if isinstance(x, Sized) and not isinstance(x, str)}
-    own = [name for name in samples.own_columns(sized) if len(sized[name]) == rows]
+    own = [name for name in samples.custom_signal_columns(sized) if len(sized[name]) == rows]
     kind = [next(name for name in (samples.LABEL, "kind") if name in columns)] if "kind" in columns else []
     read = {name: list(columns[name]) for name in (*samples.HEADER, *kind, *own)}
     lengths = {name: len(values) for name, values in read.items()}
     if len(set(lengths.values())) > 1:
-        told = ", ".join(f"{name} {length}" for name, length in lengths.items())
-        raise InputError(f"{source}: columns must be equally long, but have {told} rows")
-    said = ("time", *RECORDED, *SIZES)
+        lengths_text = ", ".join(f"{name} {length}" for name, length in lengths.items())
+        raise InputError(f"{source}: columns must be equally long, but have {lengths_text} rows")
+    numeric = (samples.TIME, *RECORDED, *SIZES)
     values: dict[str, Column] = {
-        x: np.array([_finite(source, k, x, value) for k, value in enumerate(read[x])]) for x in said
+        x: np.array([_finite(source, k, x, value) for k, value in enumerate(read[x])]) for x in numeric
     }
-    values["time"] = np.round(values["time"], 9)
-    values["vehicle"] = np.array([str(x) for x in read["vehicle"]])
+    values[samples.TIME] = np.round(values[samples.TIME], 9)
+    values[samples.VEHICLE] = np.array([str(x) for x in read[samples.VEHICLE]])
     values |= {name: own_numbers(read[name]) for name in own}
     kinds = map(str, read[kind[0]]) if kind else ["car"] * rows
     values[KIND] = np.array([float(code_of(kind_called(name))) for name in kinds])
-    return _of_table(source, Table(Path(source), values, rows), own, road)
+    return _of_table(source, ColumnTable(Path(source), values, rows), own, road)
 
 
-def _of_table(source: str, columns: Table, own: Sequence[str], road: Road) -> OneTrace:
+def _of_table(source: str, columns: ColumnTable, own: Sequence[str], road: Road) -> OneTrace:
     """The trace of rows, each with its time and vehicle. Raises ``InputError`` where they are no table."""
-    names = list(dict.fromkeys(columns["vehicle"].tolist()))
-    if len(np.unique(columns["time"])) < 2:
+    names = list(dict.fromkeys(columns[samples.VEHICLE].tolist()))
+    if len(np.unique(columns[samples.TIME])) < 2:
         raise InputError(f"{source}: fewer than two times; at least two samples are needed")
     ordered = samples.in_order(columns)
     table, clock = ordered.table, ordered.clock
     frames = samples.frames_of(table, ordered.ids, clock)
     count = int(frames.max()) + 1
-    rows = {name: np.flatnonzero(table["vehicle"] == name) for name in names}
+    rows = {name: np.flatnonzero(table[samples.VEHICLE] == name) for name in names}
     for name, at in rows.items():
         if len(at) != count:
             raise InputError(
@@ -353,18 +355,18 @@ def _of_table(source: str, columns: Table, own: Sequence[str], road: Road) -> On
     read = {x: {n: table[x][rows[n]] for n in names} for x in (*RECORDED, *own)}
     signals: dict[tuple[str, str], Array] = {(x, n): read[x][n] for x in RECORDED for n in names}
     signals |= by_vehicle({x: read[x] for x in own})
-    first = f"{float(columns['time'].min()):.15g} s"
+    first = f"{float(columns[samples.TIME].min()):.15g} s"
     return _one_trace(source, 1 / Fraction(clock.rate), signals, sizes, road, first)
 
 
 def _finite(source: str, row: int, column: str, value: object) -> float:
     try:
-        found = float(value)  # type: ignore[arg-type]
+        number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
-        found = math.nan
-    if not math.isfinite(found):
+        number = math.nan
+    if not math.isfinite(number):
         raise InputError(f"{source}, row {row}, column {column}={value!r}: a finite number is needed")
-    return found
+    return number
 
 
 def _one_trace(

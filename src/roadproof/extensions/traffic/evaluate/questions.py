@@ -1,4 +1,4 @@
-"""What is asked of recorded traffic (semantics §7): formulas compiled once, for all recordings.
+"""The formulas for recorded traffic (semantics §7), compiled once for all recordings.
 
 The vehicles of a pair are SV and POV in the order of the pair; a scenario is asked for both role
 assignments, so half of the formulas have the names swapped. L is the lane of the pair's first
@@ -13,20 +13,22 @@ from typing import Literal, TypeAlias
 from roadproof.errors import InputError, UsageError
 from roadproof.extensions.drivers.driving import require
 from roadproof.extensions.drivers.models import check_drivers
-from roadproof.extensions.traffic.evaluate.courses import Course, courses_of
+from roadproof.extensions.traffic import scenario_parts
+from roadproof.extensions.traffic.evaluate.courses import ManoeuvreTest, manoeuvre_tests
+from roadproof.extensions.traffic.evaluate.horizon import horizon
 from roadproof.extensions.traffic.evaluate.sectors import Sector, is_possible, sectors_of
 from roadproof.extensions.traffic.evaluate.traces import OTHER_LANE, LaneAtom, lane_atoms
 from roadproof.extensions.traffic.formats.clock import Rate
-from roadproof.extensions.traffic.formats.pairs import DetectionRange, Reach
+from roadproof.extensions.traffic.formats.pairs import DetectionRange, RssParameters
 from roadproof.extensions.traffic.formats.recording import ZONES
-from roadproof.library import scenarios as s
+from roadproof.library import scenarios as scenario_library
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.loading import bundled_library
-from roadproof.library.specification import Library, Query, Specification, unknown
-from roadproof.logic.formula import Formula, disjunction, is_state, share
-from roadproof.logic.rewrite import all_with_values, horizon, with_values, without_names
+from roadproof.library.specification import Library, Query, Specification, unknown_name
+from roadproof.logic.formula import Formula, disjunction, hash_cons, is_state
+from roadproof.logic.rewrite import all_with_values, with_values, without_names
 from roadproof.semantics.sampled.answers import Convention, Key
 from roadproof.semantics.sampled.batch import steps_of
 from roadproof.semantics.sampled.compiled import Monitor, compile
@@ -34,13 +36,16 @@ from roadproof.semantics.sampled.compiled import Monitor, compile
 Role: TypeAlias = Literal["first", "second"]
 """Which vehicle of a pair is SV."""
 
-ROLES: Mapping[Role, tuple[str, ...]] = {"first": s.PAIR, "second": s.PAIR[::-1]}
+ROLES: Mapping[Role, tuple[str, ...]] = {
+    "first": scenario_library.PAIR,
+    "second": scenario_library.PAIR[::-1],
+}
 """The vehicles of a pair in the order of a scenario's arguments."""
 
 
 @dataclass(frozen=True)
-class Settings:
-    """How traffic is evaluated. ``values`` gives every parameter but minDanger, in SI units.
+class EvaluationSettings:
+    """The settings of an evaluation. ``values`` gives every parameter but minDanger, in SI units.
 
     ``detectors`` are definitions of (SV, POV, L) that are asked for beside the scenarios, such as
     COMPARISON; they look at all common frames of a pair, and at every lane. ``drivers`` are models that the
@@ -63,9 +68,9 @@ class Settings:
             values = getattr(self, name)
             if not values or len(set(values)) != len(values):
                 raise UsageError(f"evaluate: {name}={values} must name at least one, each once")
-        known = s.numbers_of(self.library.select(self.sets[0], self.options))
+        known = scenario_library.numbers_of(self.library.select(self.sets[0], self.options))
         for number in sorted(set(self.scenarios) - set(known)):
-            message = unknown("scenario", str(number), map(str, known))
+            message = unknown_name("scenario", str(number), map(str, known))
             raise UsageError(f"evaluate: scenarios={self.scenarios}: {message}")
         if min(self.min_danger) < 0:
             raise UsageError("evaluate: minDanger must not be negative")
@@ -74,10 +79,10 @@ class Settings:
             require(self.library.select(self.sets[0], self.options), self.values)
 
 
-def default_settings(library: Library | None = None) -> Settings:
+def default_settings(library: Library | None = None) -> EvaluationSettings:
     """The paper's experiment: three sets, minSafe 0.6, minDanger 0 and 0.6, cars only."""
     chosen = library or bundled_library()
-    return Settings(chosen, {}, default_values(chosen))
+    return EvaluationSettings(chosen, {}, default_values(chosen))
 
 
 Condition: TypeAlias = Literal["violation", "safe", "start"]
@@ -85,7 +90,7 @@ Condition: TypeAlias = Literal["violation", "safe", "start"]
 
 
 @dataclass(frozen=True)
-class Danger:
+class DangerKey:
     """Danger under the ``min_danger``-th minDanger."""
 
     min_danger: int
@@ -124,7 +129,7 @@ START: Condition = "start"
 
 
 @dataclass(frozen=True)
-class Questions:
+class EvaluationQuestions:
     """Monitors for each stage of the evaluation, and the lane predicates that the data must give.
 
     ``violation`` is asked of moments where it is a matter of one (``violation_is_state``), and ``danger`` of
@@ -135,11 +140,11 @@ class Questions:
     ``detectors``. ``courses``: what driver models are asked about matches.
     """
 
-    settings: Settings
+    settings: EvaluationSettings
     rate: Rate
     violation: Monitor[Condition]
     violation_is_state: bool
-    danger: Monitor[Condition | Danger]
+    danger: Monitor[Condition | DangerKey]
     safe_steps: int
     danger_steps: tuple[int, ...]
     sectors: tuple[Sector, ...]
@@ -148,13 +153,15 @@ class Questions:
     triple_start: Monitor[Condition] | None
     triples: tuple[Monitor[MonitorKey], ...]
     lane_atoms: Mapping[Formula, LaneAtom]
-    reach: Reach | None
+    reach: RssParameters | None
     detectors: Monitor[DetectorKey] | None
     sight: DetectionRange | None
-    courses: tuple[Course, ...] = ()
+    courses: tuple[ManoeuvreTest, ...] = ()
 
 
-def ask(settings: Settings, rate: Rate, zones: Iterable[str] = ZONES) -> Questions:
+def compile_questions(
+    settings: EvaluationSettings, rate: Rate, zones: Iterable[str] = ZONES
+) -> EvaluationQuestions:
     """Compile the questions for recordings of ``rate`` samples a second, on roads of no other ``zones``.
 
     Scenarios that cannot begin on such a road are not asked. Raises ``InputError`` where a set or option does
@@ -163,12 +170,15 @@ def ask(settings: Settings, rate: Rate, zones: Iterable[str] = ZONES) -> Questio
     dt = 1 / Fraction(rate)
     sets = {name: settings.library.select(name, settings.options) for name in settings.sets}
     first = sets[settings.sets[0]]
-    near, starts_safe, endangers = (meaning(first, *s.PAIR) for meaning in (s.violation, s.safe, s.danger))
+    near, starts_safe, endangers = (
+        meaning(first, *scenario_library.PAIR)
+        for meaning in (scenario_parts.violation, scenario_parts.safe, scenario_library.danger)
+    )
     for name in settings.sets[1:]:
         _check_same_danger(settings, (starts_safe, endangers), first, sets[name])
     safely = _with_values(settings, starts_safe.formula)
-    dangers: dict[Condition | Danger, Formula] = {
-        Danger(k): _with_values(settings, endangers.formula, m) for k, m in enumerate(settings.min_danger)
+    dangers: dict[Condition | DangerKey, Formula] = {
+        DangerKey(k): _with_values(settings, endangers.formula, m) for k, m in enumerate(settings.min_danger)
     }
     there = {*zones}
     sectors = tuple(x for x in sectors_of(first, settings.scenarios) if is_possible(x, there))
@@ -177,7 +187,7 @@ def ask(settings: Settings, rate: Rate, zones: Iterable[str] = ZONES) -> Questio
     violated = _with_values(settings, near.formula)
     shared: dict[Formula, Formula] = {}
     atoms = dict(lane_atoms(first))
-    return Questions(
+    return EvaluationQuestions(
         settings=settings,
         rate=rate,
         violation=compile({VIOLATION: violated}, shared),
@@ -190,84 +200,94 @@ def ask(settings: Settings, rate: Rate, zones: Iterable[str] = ZONES) -> Questio
         pairs=_monitors(settings, _of_pairs(sets.values(), two), shared),
         triple_start=_start_of_triples(settings, sets.values(), three) if three else None,
         triples=_monitors(settings, _of_triples(sets.values(), three), shared),
-        lane_atoms=dict(zip(share(atoms, without_names, shared), atoms.values(), strict=True)),
+        lane_atoms=dict(zip(hash_cons(atoms, without_names, shared), atoms.values(), strict=True)),
         reach=_reach(settings, near),
         detectors=compile(_all_with_values(settings, detectors)) if detectors else None,
         sight=_sight(settings, detectors),
-        courses=tuple(courses_of(tuple(sets.values()), settings.values, settings.drivers, (*two, *three))),
+        courses=tuple(
+            manoeuvre_tests(tuple(sets.values()), settings.values, settings.drivers, (*two, *three))
+        ),
     )
 
 
-def _with_values(settings: Settings, formula: Formula, min_danger: Fraction = Fraction(0)) -> Formula:
-    return with_values(formula, {**settings.values, s.MIN_DANGER: min_danger})
+def _with_values(
+    settings: EvaluationSettings, formula: Formula, min_danger: Fraction = Fraction(0)
+) -> Formula:
+    return with_values(formula, {**settings.values, scenario_library.MIN_DANGER: min_danger})
 
 
 def _all_with_values(
-    settings: Settings, queries: Mapping[Key, Query], min_danger: Fraction = Fraction(0)
+    settings: EvaluationSettings, queries: Mapping[Key, Query], min_danger: Fraction = Fraction(0)
 ) -> dict[Key, Formula]:
-    values = {**settings.values, s.MIN_DANGER: min_danger}
+    values = {**settings.values, scenario_library.MIN_DANGER: min_danger}
     return dict(zip(queries, all_with_values((x.formula for x in queries.values()), values), strict=True))
 
 
 def _monitors(
-    settings: Settings, asked: Mapping[MonitorKey, Query], shared: dict[Formula, Formula]
+    settings: EvaluationSettings, queries: Mapping[MonitorKey, Query], shared: dict[Formula, Formula]
 ) -> tuple[Monitor[MonitorKey], ...]:
     """One for each minDanger; none where nothing is asked. ``shared``: see ``compile``."""
-    each = (_all_with_values(settings, asked, m) for m in settings.min_danger if asked)
+    each = (_all_with_values(settings, queries, m) for m in settings.min_danger if queries)
     return tuple(compile(formulas, shared) for formulas in each)
 
 
 def askable(spec: Specification) -> tuple[int, ...]:
     """The scenarios that can be asked of recordings: of two cars, or of three with L the lane of SV."""
-    return tuple(n for n in s.numbers_of(spec) if _reason_not(spec, s.Scenario(n, spec.set_name)) is None)
+    return tuple(
+        n
+        for n in scenario_library.numbers_of(spec)
+        if _reason_not(spec, scenario_library.Scenario(n, spec.set_name)) is None
+    )
 
 
-def _reason_not(spec: Specification, scenario: s.Scenario) -> str | None:
-    """Why a scenario cannot be asked of recordings."""
-    vehicles, name = s.vehicles_of(spec, scenario), s.name_of(scenario.number)
-    if len(vehicles) not in (len(s.PAIR), len(s.TRIPLE)):
+def _reason_not(spec: Specification, scenario: scenario_library.Scenario) -> str | None:
+    """Return why a scenario cannot be asked of recordings."""
+    vehicles, name = scenario_library.vehicles_of(spec, scenario), scenario_library.name_of(scenario.number)
+    if len(vehicles) not in (len(scenario_library.PAIR), len(scenario_library.TRIPLE)):
         return (
             f"{name} is about {len(vehicles)} vehicles, but those of recordings are looked at in pairs and "
             "triples"
         )
-    owner = s.lane_owner(spec, scenario)
-    if len(vehicles) == len(s.TRIPLE) and owner != s.SUBJECT:
-        lane = f"in {name} {s.LANE} is the lane of {owner}"
-        return f"{lane}, but of three vehicles that of {s.SUBJECT} is looked at"
+    owner = scenario_parts.lane_owner(spec, scenario)
+    if len(vehicles) == len(scenario_library.TRIPLE) and owner != scenario_library.SUBJECT:
+        lane = f"in {name} {scenario_library.LANE} is the lane of {owner}"
+        return f"{lane}, but of three vehicles that of {scenario_library.SUBJECT} is looked at"
     return None
 
 
 def _by_vehicles(spec: Specification, numbers: Iterable[int]) -> tuple[list[int], list[int]]:
     """The scenarios of two cars and those of three. Raises ``InputError`` for others."""
-    of: dict[int, list[int]] = {len(s.PAIR): [], len(s.TRIPLE): []}
+    of: dict[int, list[int]] = {len(scenario_library.PAIR): [], len(scenario_library.TRIPLE): []}
     for number in numbers:
-        scenario = s.Scenario(number, spec.set_name)
+        scenario = scenario_library.Scenario(number, spec.set_name)
         reason = _reason_not(spec, scenario)
         if reason is not None:
             raise InputError(f"evaluate: {reason}: leave it out")
-        of[len(s.vehicles_of(spec, scenario))].append(number)
-    return of[len(s.PAIR)], of[len(s.TRIPLE)]
+        of[len(scenario_library.vehicles_of(spec, scenario))].append(number)
+    return of[len(scenario_library.PAIR)], of[len(scenario_library.TRIPLE)]
 
 
 def _of_pairs(sets: Iterable[Specification], numbers: Iterable[int]) -> dict[MonitorKey, Query]:
     """Scenarios of two cars in both roles."""
-    asked: dict[MonitorKey, Query] = {}
-    lanes = dict(zip(s.PAIR, (s.LANE, OTHER_LANE), strict=True))
+    queries: dict[MonitorKey, Query] = {}
+    lanes = dict(zip(scenario_library.PAIR, (scenario_library.LANE, OTHER_LANE), strict=True))
     for spec in sets:
         walk = Elaborator(spec)
         for number in numbers:
-            scenario = s.Scenario(number, spec.set_name)
-            place = 0 if s.lane_owner(spec, scenario) == s.SUBJECT else 1
+            scenario = scenario_library.Scenario(number, spec.set_name)
+            place = 0 if scenario_parts.lane_owner(spec, scenario) == scenario_library.SUBJECT else 1
             for role, vehicles in ROLES.items():
                 lane = lanes[vehicles[place]]
                 key = MonitorKey(spec.set_name, number, role, lane)
-                asked[key] = s.applied(spec, scenario, vehicles, lane, walk)
-    return asked
+                queries[key] = scenario_library.apply_scenario(spec, scenario, vehicles, lane, walk)
+    return queries
 
 
 def _of_triples(sets: Iterable[Specification], numbers: Iterable[int]) -> dict[MonitorKey, Query]:
     return {
-        of_three(spec.set_name, number): s.applied(spec, s.Scenario(number, spec.set_name), s.TRIPLE)
+        of_three(spec.set_name, number): scenario_library.apply_scenario(
+            spec, scenario_library.Scenario(number, spec.set_name), scenario_library.TRIPLE
+        )
         for spec in sets
         for number in numbers
     }
@@ -275,32 +295,39 @@ def _of_triples(sets: Iterable[Specification], numbers: Iterable[int]) -> dict[M
 
 def of_three(set_name: str, number: int) -> MonitorKey:
     """The question for a scenario of three cars."""
-    return MonitorKey(set_name, number, "first", s.LANE)
+    return MonitorKey(set_name, number, "first", scenario_library.LANE)
 
 
 def _start_of_triples(
-    settings: Settings, sets: Iterable[Specification], numbers: Iterable[int]
+    settings: EvaluationSettings, sets: Iterable[Specification], numbers: Iterable[int]
 ) -> Monitor[Condition]:
     """initialCondition is a conjunct of the template (paper, eq. disturbFormat), so no match is without."""
-    starts = [s.initial_condition(spec, number, s.TRIPLE).formula for spec in sets for number in numbers]
+    starts = [
+        scenario_parts.initial_condition(spec, number, scenario_library.TRIPLE).formula
+        for spec in sets
+        for number in numbers
+    ]
     return compile({START: disjunction(*(_with_values(settings, start) for start in starts))})
 
 
-def _steps(formula: Formula, dt: Fraction, asked: Query) -> int:
+def _steps(formula: Formula, dt: Fraction, query: Query) -> int:
     seconds = horizon(formula)
     if seconds is None:
         raise UsageError(
-            f"evaluate: {asked.text} must look ahead for a bounded time, or no trace could be cut after it"
+            f"evaluate: {query.text} must look ahead for a bounded time, or no trace could be cut after it"
         )
     return steps_of(seconds, dt)
 
 
 def _check_same_danger(
-    settings: Settings, known: tuple[Query, Query], one: Specification, other: Specification
+    settings: EvaluationSettings, known: tuple[Query, Query], one: Specification, other: Specification
 ) -> None:
-    meanings: tuple[Callable[[Specification, str, str], Query], ...] = (s.safe, s.danger)
+    meanings: tuple[Callable[[Specification, str, str], Query], ...] = (
+        scenario_parts.safe,
+        scenario_library.danger,
+    )
     for query, meaning in zip(known, meanings, strict=True):
-        theirs = meaning(other, *s.PAIR)
+        theirs = meaning(other, *scenario_library.PAIR)
         if not _same(_with_values(settings, query.formula), _with_values(settings, theirs.formula)):
             raise UsageError(
                 f"evaluate: {query.text} differs between the sets {one.set_name} and {other.set_name}; "
@@ -312,34 +339,34 @@ def _same(one: Formula, other: Formula) -> bool:
     return without_names(one) == without_names(other)
 
 
-def _of_detectors(settings: Settings, spec: Specification) -> dict[DetectorKey, Query]:
+def _of_detectors(settings: EvaluationSettings, spec: Specification) -> dict[DetectorKey, Query]:
     return {
-        DetectorKey(name, role): apply_definition(spec, name, (*vehicles, s.LANE))
+        DetectorKey(name, role): apply_definition(spec, name, (*vehicles, scenario_library.LANE))
         for name in settings.detectors
         for role, vehicles in ROLES.items()
     }
 
 
-def _sight(settings: Settings, sought: Mapping[DetectorKey, Query]) -> DetectionRange | None:
+def _sight(settings: EvaluationSettings, queries: Mapping[DetectorKey, Query]) -> DetectionRange | None:
     """The constants of the detectors' pre-filter, where all are the bundled ones."""
-    if not set(settings.detectors) <= set(s.COMPARISON):
+    if not set(settings.detectors) <= set(scenario_parts.COMPARISON):
         return None
     bundled = _bundled(settings)
     for detector in settings.detectors:
-        theirs = apply_definition(bundled, detector, (*s.PAIR, s.LANE))
-        if not _same(sought[DetectorKey(detector, "first")].formula, theirs.formula):
+        theirs = apply_definition(bundled, detector, (*scenario_library.PAIR, scenario_library.LANE))
+        if not _same(queries[DetectorKey(detector, "first")].formula, theirs.formula):
             return None
     return DetectionRange(*(float(settings.values[x]) for x in ("ttcLimit", "thwLimit", "farthest")))
 
 
-def _bundled(settings: Settings) -> Specification:
+def _bundled(settings: EvaluationSettings) -> Specification:
     """The bundled library under the same options."""
     options = {k: v for k, v in settings.options.items() if k in bundled_library().options}
     return bundled_library().select(options=options)
 
 
-def _reach(settings: Settings, near: Query) -> Reach | None:
+def _reach(settings: EvaluationSettings, near: Query) -> RssParameters | None:
     """The pre-filter's constants, where rssViolation is the bundled one, whose bound is proved."""
-    if not _same(near.formula, s.violation(_bundled(settings), *s.PAIR).formula):
+    if not _same(near.formula, scenario_parts.violation(_bundled(settings), *scenario_library.PAIR).formula):
         return None
-    return Reach(**{name: float(settings.values[name]) for name in s.RSS_PARAMETERS})
+    return RssParameters(**{name: float(settings.values[name]) for name in scenario_parts.RSS_PARAMETERS})

@@ -8,8 +8,8 @@ from roadproof.extensions.traffic.evaluate.courses import BEGINS
 from roadproof.extensions.traffic.evaluate.evaluate import Findings
 from roadproof.extensions.traffic.evaluate.foretelling import label_of, last_common, scene_in
 from roadproof.extensions.traffic.evaluate.matching import Match
-from roadproof.extensions.traffic.evaluate.questions import MonitorKey, Questions, of_three
-from roadproof.extensions.traffic.evaluate.recursive import ReadAs, Trace, TraceReader
+from roadproof.extensions.traffic.evaluate.questions import EvaluationQuestions, MonitorKey, of_three
+from roadproof.extensions.traffic.evaluate.recursive import ReadAs, SampledTrace, TraceReader
 from roadproof.extensions.traffic.evaluate.traces import OTHER_LANE, gather_one
 from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.library.scenarios import LANE, PAIR, TRIPLE
@@ -18,7 +18,7 @@ from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import Monitor
 
 
-def recheck(recording: Recording, questions: Questions, findings: Findings) -> Iterator[str]:
+def recheck(recording: Recording, questions: EvaluationQuestions, findings: Findings) -> Iterator[str]:
     """One line for each answer that the recursive evaluator denies; of nothing denied, none.
 
     Pairs are asked every question again, so that a match that was missed shows as well as one too
@@ -38,11 +38,11 @@ def recheck(recording: Recording, questions: Questions, findings: Findings) -> I
             {name: names.index(lane) if lane else -1 for name, lane in lanes.items()},
             (t.start_frame, t.end_frame),
         )
-        for asked, formula in pairs[t.min_danger].items():
-            sv, pov = (t.first, t.second) if asked.sv == "first" else (t.second, t.first)
-            lane = lanes[asked.lane]
+        for key, formula in pairs[t.min_danger].items():
+            sv, pov = (t.first, t.second) if key.sv == "first" else (t.second, t.first)
+            lane = lanes[key.lane]
             match = Match(
-                sv, pov, None, lane, t.start_frame, t.end_frame, t.min_danger, asked.set_name, asked.number
+                sv, pov, None, lane, t.start_frame, t.end_frame, t.min_danger, key.set_name, key.number
             )
             if reading.holds(formula, 0, _view(questions)) != (match in matched):
                 yield _line(recording, match, match in matched)
@@ -55,16 +55,16 @@ def recheck(recording: Recording, questions: Questions, findings: Findings) -> I
             if not reading.holds(formula, 0, _view(questions)):
                 yield _line(recording, match, True)
         if match.labels:
-            begun, labels = _foretold(recording, questions, match, place)
-            if (begun, labels) != (match.begun, match.labels):
+            frame, labels = _driver_labels(recording, questions, match, place)
+            if (frame, labels) != (match.begun, match.labels):
                 yield (
-                    f"{_about(recording, match)}: found {_told(match.begun, match.labels)}, but the "
-                    f"recursive evaluator has {_told(begun, labels)}"
+                    f"{_about(recording, match)}: found {_labels_text(match.begun, match.labels)}, but the "
+                    f"recursive evaluator has {_labels_text(frame, labels)}"
                 )
 
 
-def _foretold(
-    recording: Recording, questions: Questions, match: Match, place: Mapping[int, int]
+def _driver_labels(
+    recording: Recording, questions: EvaluationQuestions, match: Match, place: Mapping[int, int]
 ) -> tuple[int | None, tuple[str, ...]]:
     """Return when the manoeuvre of a match begins, sample by sample, and the labels of drivers."""
     course = next(x for x in questions.courses if match.scenario in x.scenarios)
@@ -75,27 +75,27 @@ def _foretold(
     reading = TraceReader(trace_of(gather_one(recording, vehicles, frames, course.begins.signals)))
     begins = course.begins.formulas[BEGINS]
     samples = range(frames[1] - frames[0] + 1)
-    begun = next((frames[0] + k for k in samples if reading.holds(begins, k, "strong")), None)
-    scene = None if begun is None else scene_in(recording, course, vehicles, frames, {})
-    return begun, tuple(label_of(course, scene, x) for x in questions.settings.drivers)
+    frame = next((frames[0] + k for k in samples if reading.holds(begins, k, "strong")), None)
+    scene = None if frame is None else scene_in(recording, course, vehicles, frames, {})
+    return frame, tuple(label_of(course, scene, x) for x in questions.settings.drivers)
 
 
-def _told(begun: int | None, labels: Iterable[str]) -> str:
-    return f"{', '.join(x or 'nothing' for x in labels)}" + ("" if begun is None else f" at frame {begun}")
+def _labels_text(frame: int | None, labels: Iterable[str]) -> str:
+    return f"{', '.join(x or 'nothing' for x in labels)}" + ("" if frame is None else f" at frame {frame}")
 
 
 def _shared(monitors: Iterable[Monitor[MonitorKey]]) -> list[dict[MonitorKey, Formula]]:
     """The formulas as they were given, equal parts being one object: they are then found quickly."""
     known: dict[Formula, Formula] = {}
     return [
-        {asked: transform(x, lambda part: known.setdefault(part, part)) for asked, x in m.formulas.items()}
+        {key: transform(x, lambda part: known.setdefault(part, part)) for key, x in m.formulas.items()}
         for m in monitors
     ]
 
 
 def _read(
     recording: Recording,
-    questions: Questions,
+    questions: EvaluationQuestions,
     vehicles: Mapping[str, int],
     lanes: Mapping[str, int],
     frames: tuple[int, int],
@@ -105,10 +105,10 @@ def _read(
     return TraceReader(trace_of(batch))
 
 
-def trace_of(batch: Batch) -> Trace:
+def trace_of(batch: Batch) -> SampledTrace:
     """The only trace of a batch as the recursive evaluator wants it."""
     length = int(batch.lengths[0])
-    return Trace(
+    return SampledTrace(
         batch.dt,
         length,
         {key: values[:length, 0].tolist() for key, values in batch.signals.items()},
@@ -117,17 +117,17 @@ def trace_of(batch: Batch) -> Trace:
     )
 
 
-def _view(questions: Questions) -> ReadAs:
+def _view(questions: EvaluationQuestions) -> ReadAs:
     return "clip" if questions.settings.convention == "clip" else "strong"
 
 
-def _line(recording: Recording, match: Match, found: bool) -> str:
-    said = (
+def _line(recording: Recording, match: Match, is_found: bool) -> str:
+    verdict = (
         "found, but the recursive evaluator denies it"
-        if found
+        if is_found
         else "missed, but the recursive evaluator has it"
     )
-    return f"{_about(recording, match)}: {said}"
+    return f"{_about(recording, match)}: {verdict}"
 
 
 def _about(recording: Recording, match: Match) -> str:

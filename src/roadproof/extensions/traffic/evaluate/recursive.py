@@ -18,11 +18,11 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import bounds_of, without_names
 
 ReadAs: TypeAlias = Literal["strong", "weak", "clip"]
-Answer: TypeAlias = Literal["true", "false", "undecided"]
+ThreeValued: TypeAlias = Literal["true", "false", "undecided"]
 
 
 @dataclass(frozen=True)
-class Trace:
+class SampledTrace:
     """Samples 0 … length-1 of one trace, ``dt`` seconds apart; ``given`` is truth by structure."""
 
     dt: Fraction
@@ -32,8 +32,9 @@ class Trace:
     given: Mapping[Formula, Sequence[bool]] = field(default_factory=dict)
 
 
-def answer(formula: Formula, trace: Trace, sample: int = 0, clip: bool = False) -> Answer:
-    """Whether ``formula`` holds at ``sample``: true for every continuation, false for none (semantics §1).
+def answer(formula: Formula, trace: SampledTrace, sample: int = 0, clip: bool = False) -> ThreeValued:
+    """Return whether ``formula`` holds at ``sample``: true for every continuation, false for none
+    (semantics §1).
 
     With ``clip``, windows are cut at the last sample and the answer is never ``undecided``.
     """
@@ -46,7 +47,7 @@ def answer(formula: Formula, trace: Trace, sample: int = 0, clip: bool = False) 
 class TraceReader:
     """Truth and margins of formulas over one trace."""
 
-    def __init__(self, trace: Trace) -> None:
+    def __init__(self, trace: SampledTrace) -> None:
         self.trace = trace
         self.given = {without_names(g): values for g, values in trace.given.items()}
         self.found: dict[Formula, Sequence[bool] | None] = {}
@@ -57,7 +58,7 @@ class TraceReader:
     # --- truth ---------------------------------------------------------------------------------
 
     def _holds(self, formula: Formula, k: int, view: ReadAs) -> bool:
-        """Whether ``formula`` holds at sample ``k`` (inside the trace) in a view."""
+        """Return whether ``formula`` holds at sample ``k`` (inside the trace) in a view."""
         known = self._given(formula)
         if known is not None:
             return bool(known[k])
@@ -77,12 +78,12 @@ class TraceReader:
                 return self.holds(body, k, view)
             case f.Eventually(interval, body):
                 window, whole = self.window(interval, k)
-                found = any(self.holds(body, j, view) for j in window)
-                return found or (view == "weak" and not whole)
+                some = any(self.holds(body, j, view) for j in window)
+                return some or (view == "weak" and not whole)
             case f.Always(interval, body):
                 window, whole = self.window(interval, k)
-                kept = all(self.holds(body, j, view) for j in window)
-                return kept and (view != "strong" or whole)
+                every = all(self.holds(body, j, view) for j in window)
+                return every and (view != "strong" or whole)
             case f.Until(left, interval, right):
                 window, whole = self.window(interval, k)
                 for j in window:
@@ -97,7 +98,7 @@ class TraceReader:
     # --- margins -------------------------------------------------------------------------------
 
     def _margin(self, formula: Formula, k: int, view: ReadAs) -> float:
-        """By how much ``formula`` holds at sample ``k`` in a view; -∞ to ∞."""
+        """Return by how much ``formula`` holds at sample ``k`` in a view; -∞ to ∞."""
         known = self._given(formula)
         if known is not None:
             return inf if known[k] else -inf
@@ -170,7 +171,7 @@ class TraceReader:
         if constant is not None:
             return constant
         match term:
-            case t.Signal(name, vehicle) | t.Own(name, vehicle):
+            case t.Signal(name, vehicle) | t.CustomSignal(name, vehicle):
                 return float(self.trace.signals[name, vehicle][k])
             case t.Size(name, vehicle):
                 return float(self.trace.sizes[name, vehicle])

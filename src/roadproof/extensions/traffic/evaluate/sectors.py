@@ -4,7 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from roadproof.errors import TextError
-from roadproof.library import scenarios as s
+from roadproof.extensions.traffic import scenario_parts
+from roadproof.library import scenarios as scenario_library
 from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, conjunction, disjunction, negation, transform
@@ -32,30 +33,32 @@ class Sector:
 
 def sectors_of(specification: Specification, numbers: Iterable[int]) -> tuple[Sector, ...]:
     """The scenarios by road sector, in the order in which the sectors come first."""
-    found: dict[tuple[str, Formula | None], Sector] = {}
+    sectors: dict[tuple[str, Formula | None], Sector] = {}
     for number in numbers:
         name, where = _place_of(specification, number)
         key = name, None if where is None else without_names(where.formula)
-        known = found.get(key, Sector(name, (), (), where))
-        vehicles = s.vehicles_of(specification, s.Scenario(number, specification.set_name))
-        three = (number,) if len(vehicles) == len(s.TRIPLE) else ()
+        known = sectors.get(key, Sector(name, (), (), where))
+        vehicles = scenario_library.vehicles_of(
+            specification, scenario_library.Scenario(number, specification.set_name)
+        )
+        three = (number,) if len(vehicles) == len(scenario_library.TRIPLE) else ()
         scenarios, of_three = (*known.scenarios, number), (*known.of_three, *three)
-        found[key] = replace(known, scenarios=scenarios, of_three=of_three)
-    return tuple(found.values())
+        sectors[key] = replace(known, scenarios=scenarios, of_three=of_three)
+    return tuple(sectors.values())
 
 
 def _place_of(specification: Specification, number: int) -> tuple[str, Query | None]:
-    if not s.follows_template(specification, number):
+    if not scenario_parts.follows_template(specification, number):
         return ANYWHERE, None
-    name = s.sector_words(specification, number) or f"sector of {number}"
+    name = scenario_library.sector_words(specification, number) or f"sector of {number}"
     try:
-        return name, s.sector(specification, number, s.PAIR)
+        return name, scenario_parts.sector(specification, number, scenario_library.PAIR)
     except TextError:  # a sector of three vehicles that says nothing of two
         return name, None
 
 
 def is_possible(sector: Sector, zones: Iterable[str]) -> bool:
-    """Whether a sector can be met on a road that has lanelets of no other than these ``zones``.
+    """Return whether a sector can be met on a road that has lanelets of no other than these ``zones``.
 
     True is said in doubt: then its scenarios are asked, and found or not.
     """

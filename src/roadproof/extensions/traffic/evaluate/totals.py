@@ -10,9 +10,9 @@ from fractions import Fraction
 from itertools import product
 from typing import NamedTuple
 
-from roadproof.extensions.traffic.evaluate.evaluate import Findings, Trace
+from roadproof.extensions.traffic.evaluate.evaluate import DisturbanceTrace, Findings
 from roadproof.extensions.traffic.evaluate.matching import Match, PossibleMatch
-from roadproof.extensions.traffic.evaluate.questions import Settings
+from roadproof.extensions.traffic.evaluate.questions import EvaluationSettings
 from roadproof.extensions.traffic.evaluate.sectors import Sector, sectors_of
 from roadproof.extensions.traffic.evaluate.violations import Degree, VehiclePair, ViolatingPairs
 from roadproof.extensions.traffic.formats.repeats import FramePair
@@ -31,8 +31,8 @@ class Repeat:
 
 
 @dataclass
-class Counts:
-    """What was counted so far, by what it is and the moment: the recording that showed it."""
+class ShownMoments:
+    """The recording that first showed each counted thing, by kind and moment."""
 
     known: dict[tuple[str, int], str] = field(default_factory=dict)
     repeats: list[Repeat] = field(default_factory=list)
@@ -40,7 +40,7 @@ class Counts:
     def is_new(
         self, recording: str, pair: tuple[int, int], what: str, k: int | None, keys: Iterable[int]
     ) -> bool:
-        """Whether no earlier recording shows this at any of its moments; then this one does."""
+        """Return whether no earlier recording shows this at any of its moments; then this one does."""
         marks = [(f"{what} {k}", key) for key in keys if key]
         shown = next(
             (self.known[mark] for mark in marks if self.known.get(mark, recording) != recording), None
@@ -54,31 +54,31 @@ class Counts:
         return True
 
 
-def without_repeats(findings: Findings, counted: Counts) -> Findings:
+def without_repeats(findings: Findings, shown_moments: ShownMoments) -> Findings:
     """The findings without what an earlier recording has too: traces with matches, violations, detections."""
     if not findings.seen:
         return findings
 
     def is_new(pair: FramePair, what: str, k: int | None, keys: tuple[int, ...]) -> bool:
-        return counted.is_new(findings.recording, (pair.first, pair.second), what, k, keys)
+        return shown_moments.is_new(findings.recording, (pair.first, pair.second), what, k, keys)
 
     seen = {(x.first, x.second): x for x in findings.seen}
     shown = {
         (x.first, x.second) for x in findings.seen if x.violating and not is_new(x, "violation", None, x.keys)
     }
-    kept = []
+    new_traces = []
     for trace in findings.traces:
         pair = seen[trace.first, trace.second]
         keys = pair.keys[trace.start_frame - pair.low : trace.end_frame - pair.low + 1]
         if is_new(pair, "trace", trace.min_danger, keys):
-            kept.append(trace)
-    traces = {(x.first, x.second, x.min_danger) for x in kept}
+            new_traces.append(trace)
+    traces = {(x.first, x.second, x.min_danger) for x in new_traces}
     detected = dict.fromkeys((x.detector, x.pair) for x in findings.detections)
     new = {(name, pair) for name, pair in detected if is_new(seen[pair], name, None, seen[pair].keys)}
     return replace(
         findings,
         violating=tuple(pair for pair in findings.violating if pair not in shown),
-        traces=tuple(kept),
+        traces=tuple(new_traces),
         matches=tuple(x for x in findings.matches if (*x.pair, x.min_danger) in traces),
         possible=tuple(x for x in findings.possible if (*x.pair, x.min_danger) in traces),
         detections=tuple(x for x in findings.detections if (x.detector, x.pair) in new),
@@ -86,7 +86,7 @@ def without_repeats(findings: Findings, counted: Counts) -> Findings:
 
 
 @dataclass
-class Row:
+class ResultsRow:
     """One row of a results table (paper, Table of results): a spec set under one minDanger, in a sector.
 
     Counts are of unordered pairs whose trace begins in the sector. ``matching`` is by scenarios of two cars,
@@ -119,12 +119,12 @@ class Row:
 
     @property
     def bounds(self) -> tuple[int, int]:
-        """How many traces match for sure, and how many may match at most, as places are off."""
+        """Return how many traces match for sure, and how many may match at most, as places are off."""
         return self.matching - self.uncertain, self.matching + self.possible
 
 
-class Foretold(NamedTuple):
-    """What driver models say of matches: ``min_danger`` is an index into the settings'."""
+class DriverLabelKey(NamedTuple):
+    """The key of a count of driver labels; ``min_danger`` is an index into the settings'."""
 
     min_danger: int
     set_name: str
@@ -135,7 +135,7 @@ class Foretold(NamedTuple):
 
 @dataclass
 class Totals:
-    """Everything that the tables need, added up recording by recording.
+    """The sums over recordings from which all tables are made.
 
     ``tables``: the rows of each road sector by its name, the first being the paper's main road unless it is
     not asked for; ``met``: the sectors that a road of the recordings has. ``foretold`` counts the labels that
@@ -148,8 +148,8 @@ class Totals:
     ``violating_bounds`` how many of these do for sure, and at most.
     """
 
-    settings: Settings
-    tables: Mapping[str, list[Row]]
+    settings: EvaluationSettings
+    tables: Mapping[str, list[ResultsRow]]
     met: set[str] = field(default_factory=set)
     recordings: int = 0
     vehicles: int = 0
@@ -168,29 +168,29 @@ class Totals:
     broken: list[str] = field(default_factory=list)
     notes: dict[str, tuple[str, ...]] = field(default_factory=dict)
     repeats: list[Repeat] = field(default_factory=list)
-    foretold: Counter[Foretold] = field(default_factory=Counter)
+    foretold: Counter[DriverLabelKey] = field(default_factory=Counter)
 
     @property
-    def rows(self) -> list[Row]:
-        """Those of the first sector."""
+    def rows(self) -> list[ResultsRow]:
+        """The rows of the first sector."""
         return next(iter(self.tables.values()))
 
     @property
-    def shown(self) -> dict[str, list[Row]]:
+    def shown(self) -> dict[str, list[ResultsRow]]:
         """The tables of the first sector, and of the others that a road of the recordings has."""
         return {name: rows for k, (name, rows) in enumerate(self.tables.items()) if not k or name in self.met}
 
     @property
     def repeated(self) -> int:
-        """How many traces are left out because an earlier recording has them too."""
+        """Return how many traces are left out because an earlier recording has them too."""
         return sum(x.what == "trace" for x in self.repeats)
 
 
-def begin_totals(settings: Settings) -> Totals:
-    """No recordings yet."""
+def begin_totals(settings: EvaluationSettings) -> Totals:
+    """Return the totals of no recordings."""
     sectors = sectors_of(settings.library.select(settings.sets[0], settings.options), settings.scenarios)
     each = [(m, s) for m in settings.min_danger for s in settings.sets]
-    return Totals(settings, {sector.name: [Row(sector, *x) for x in each] for sector in sectors})
+    return Totals(settings, {sector.name: [ResultsRow(sector, *x) for x in each] for sector in sectors})
 
 
 def add_findings(totals: Totals, findings: Findings) -> None:
@@ -207,7 +207,7 @@ def add_findings(totals: Totals, findings: Findings) -> None:
         for driver, label in zip(totals.settings.drivers, match.labels, strict=bool(match.labels)):
             if label:
                 of = (match.min_danger, match.set_name, match.scenario)
-                totals.foretold[Foretold(*of, driver, label)] += 1
+                totals.foretold[DriverLabelKey(*of, driver, label)] += 1
     for place, (k, set_name) in enumerate(
         product(range(len(totals.settings.min_danger)), totals.settings.sets)
     ):
@@ -221,16 +221,16 @@ def add_findings(totals: Totals, findings: Findings) -> None:
 
         for rows in totals.tables.values():
             row, sector = rows[place], rows[place].sector
-            found = _pairs(matches, possible, sector.scenarios)
-            _count(row, traces.values(), matches, found)
-            row.matching_violating = violate(sector.name, "match", found.matching)
-            surely = violate(sector.name, "surely", found.surely)
-            row.violating_bounds = surely, violate(sector.name, "perhaps", found.perhaps)
-        found = _pairs(matches, possible, totals.settings.scenarios)
-        totals.matching[k, set_name] += len(found.matching & traces.keys())
-        totals.matching_violating[k, set_name] = violate("", "match", found.matching)
-        surely = violate("", "surely", found.surely)
-        totals.violating_bounds[k, set_name] = surely, violate("", "perhaps", found.perhaps)
+            matching_pairs = _pairs(matches, possible, sector.scenarios)
+            _count(row, traces.values(), matches, matching_pairs)
+            row.matching_violating = violate(sector.name, "match", matching_pairs.matching)
+            certain = violate(sector.name, "surely", matching_pairs.surely)
+            row.violating_bounds = certain, violate(sector.name, "perhaps", matching_pairs.perhaps)
+        matching_pairs = _pairs(matches, possible, totals.settings.scenarios)
+        totals.matching[k, set_name] += len(matching_pairs.matching & traces.keys())
+        totals.matching_violating[k, set_name] = violate("", "match", matching_pairs.matching)
+        certain = violate("", "surely", matching_pairs.surely)
+        totals.violating_bounds[k, set_name] = certain, violate("", "perhaps", matching_pairs.perhaps)
         _check(totals, findings, traces, _scenarios_by_pair(matches), k, set_name)
 
 
@@ -242,7 +242,7 @@ def _scenarios_by_pair(matches: Iterable[Match]) -> dict[tuple[int, int], set[in
     return matched
 
 
-class _Pairs(NamedTuple):
+class _MatchingPairs(NamedTuple):
     """Pairs that match with two cars, those that do for sure, and all that may."""
 
     matching: Set[VehiclePair]
@@ -250,21 +250,25 @@ class _Pairs(NamedTuple):
     perhaps: Set[VehiclePair]
 
 
-def _pairs(matches: Sequence[Match], possible: Iterable[PossibleMatch], scenarios: Collection[int]) -> _Pairs:
+def _pairs(
+    matches: Sequence[Match], possible: Iterable[PossibleMatch], scenarios: Collection[int]
+) -> _MatchingPairs:
     of_two = [x for x in matches if x.pov2 is None and x.scenario in scenarios]
     matching = {x.pair for x in of_two}
-    surely = {x.pair for x in of_two if not x.uncertain}
-    return _Pairs(matching, surely, matching | {x.pair for x in possible if x.scenario in scenarios})
+    certain = {x.pair for x in of_two if not x.uncertain}
+    return _MatchingPairs(matching, certain, matching | {x.pair for x in possible if x.scenario in scenarios})
 
 
-def _count(row: Row, traces: Iterable[Trace], matches: Iterable[Match], found: _Pairs) -> None:
-    """Add the traces and matches of the sector of a row; ``found``: the pairs of the latter."""
+def _count(
+    row: ResultsRow, traces: Iterable[DisturbanceTrace], matches: Iterable[Match], pairs: _MatchingPairs
+) -> None:
+    """Add the traces and matches of the sector of a row; ``pairs``: the pairs of the latter."""
     matched = _scenarios_by_pair(x for x in matches if x.scenario in row.sector.scenarios)
     row.traces += sum(row.sector.name in x.sectors for x in traces)
     row.matching_with_three += len(matched)
-    row.matching += len(found.matching)
-    row.uncertain += len(found.matching - found.surely)
-    row.possible += len(found.perhaps - found.matching)
+    row.matching += len(pairs.matching)
+    row.uncertain += len(pairs.matching - pairs.surely)
+    row.possible += len(pairs.perhaps - pairs.matching)
     for numbers in matched.values():
         row.scenarios.update(numbers)
         row.several += len(numbers) > 1
@@ -274,7 +278,7 @@ def _count(row: Row, traces: Iterable[Trace], matches: Iterable[Match], found: _
 def _check(
     totals: Totals,
     findings: Findings,
-    traces: Mapping[tuple[int, int], Trace],
+    traces: Mapping[tuple[int, int], DisturbanceTrace],
     matched: Mapping[tuple[int, int], set[int]],
     k: int,
     set_name: str,

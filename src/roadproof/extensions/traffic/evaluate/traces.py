@@ -10,11 +10,12 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.extensions.traffic.formats.pairs import row_of
 from roadproof.extensions.traffic.formats.recording import ZONES, Bools, Integers, Recording
-from roadproof.library.scenarios import LANE, PAIR, TRIPLE, beside_lane, in_lane, in_zone
+from roadproof.extensions.traffic.scenario_parts import beside_lane, in_lane, in_zone
+from roadproof.library.scenarios import LANE, PAIR, TRIPLE
 from roadproof.library.specification import Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
-from roadproof.logic.terms import Own
+from roadproof.logic.terms import CustomSignal
 from roadproof.semantics.sampled.batch import Array, Batch
 from roadproof.world.signals import RECORDED, SIGNALS, SIZES, SignalName, SizeName
 
@@ -49,7 +50,7 @@ def gather(
     vehicles: Mapping[str, Integers],
     low: Integers,
     high: Integers,
-    signals: Iterable[SignalName | Own],
+    signals: Iterable[SignalName | CustomSignal],
     lanes: Mapping[str, Integers] | None = None,
     atoms: Mapping[Formula, LaneAtom] | None = None,
 ) -> Batch:
@@ -67,11 +68,11 @@ def gather_one(
     recording: Recording,
     vehicles: Mapping[str, int],
     frames: tuple[int, int],
-    signals: Iterable[SignalName | Own],
+    signals: Iterable[SignalName | CustomSignal],
     lanes: Mapping[str, int] | None = None,
     atoms: Mapping[Formula, LaneAtom] | None = None,
 ) -> Batch:
-    """As ``gather``, the one trace from the first of the ``frames`` to the last."""
+    """Return the batch of one trace, from the first of the ``frames`` to the last (see ``gather``)."""
     index, at = ({name: np.array([k]) for name, k in x.items()} for x in (vehicles, lanes or {}))
     low, high = (np.array([frame]) for frame in frames)
     return gather(recording, index, low, high, signals, at, atoms)
@@ -82,28 +83,34 @@ def gather_rows(
     vehicles: Mapping[str, Integers],
     rows: Mapping[str, Integers],
     lengths: Integers,
-    signals: Iterable[SignalName | Own],
+    signals: Iterable[SignalName | CustomSignal],
     lanes: Mapping[str, Integers] | None = None,
     atoms: Mapping[Formula, LaneAtom] | None = None,
 ) -> Batch:
-    """As ``gather``, of the samples at ``rows`` (time, traces) of each vehicle, in order of time."""
-    asked = tuple(dict.fromkeys(signals))
-    own = [signal for signal in asked if isinstance(signal, Own)]
-    wanted = [signal for signal in asked if not isinstance(signal, Own)]
-    for signal in wanted:
+    """Return the batch of the samples at ``rows`` (time, traces) of each vehicle (see ``gather``)."""
+    requested = tuple(dict.fromkeys(signals))
+    own = [signal for signal in requested if isinstance(signal, CustomSignal)]
+    recorded = [signal for signal in requested if not isinstance(signal, CustomSignal)]
+    for signal in recorded:
         if signal not in RECORDED:
             raise InputError(f"no recording has the signal {signal}, which a formula needs")
-    columns = {name: recording.own[name] for name in (x.name for x in own) if name in recording.own}
-    own_signals = dict(by_vehicle({x: {v: c.take(at) for v, at in rows.items()} for x, c in columns.items()}))
+    columns = {
+        name: recording.custom_signals[name]
+        for name in (x.name for x in own)
+        if name in recording.custom_signals
+    }
+    custom_signals_in_order = dict(
+        by_vehicle({x: {v: c.take(at) for v, at in rows.items()} for x, c in columns.items()})
+    )
     for x in own:
         whose = rows if x.vehicle else ("",)
-        refuse_missing([(x.name, v) for v in whose], own_signals, f"recording {recording.name}")
+        refuse_missing([(x.name, v) for v in whose], custom_signals_in_order, f"recording {recording.name}")
     return Batch(
         dt=1 / Fraction(recording.rate),
         lengths=lengths,
         signals={
-            **{(x, name): getattr(recording, x).take(at) for name, at in rows.items() for x in wanted},
-            **own_signals,
+            **{(x, name): getattr(recording, x).take(at) for name, at in rows.items() for x in recorded},
+            **custom_signals_in_order,
         },
         sizes={
             **{(x, v): getattr(recording, x).take(index) for v, index in vehicles.items() for x in SIZES},
@@ -115,7 +122,7 @@ def gather_rows(
 
 
 def by_vehicle(columns: Mapping[str, Mapping[str, Array]]) -> Iterator[tuple[tuple[str, str], Array]]:
-    """Columns of own signals, by name and vehicle, as signals of a batch.
+    """Columns of custom signals, by name and vehicle, as signals of a batch.
 
     One that is the same for all vehicles at every instant is a signal of no vehicle ('') too.
     """
@@ -128,22 +135,22 @@ def by_vehicle(columns: Mapping[str, Mapping[str, Array]]) -> Iterator[tuple[tup
 
 
 def refuse_missing(
-    wanted: Iterable[tuple[str, str]], there: Collection[tuple[str, str]], source: str
+    required: Iterable[tuple[str, str]], present: Collection[tuple[str, str]], source: str
 ) -> None:
-    """Raise ``InputError`` for an own signal of which there is no column, or not one for all vehicles."""
-    for name, vehicle in wanted:
-        if (name, vehicle) in there:
+    """Raise ``InputError`` for a custom signal of which there is no column, or not one for all vehicles."""
+    for name, vehicle in required:
+        if (name, vehicle) in present:
             continue
-        if any(name == known for known, _ in there):
+        if any(name == known for known, _ in present):
             raise InputError(
                 f"{source}: column {name} is not the same for all vehicles at every instant, but signal "
                 f"{name} is of no vehicle; declare it of one: signal {name}(a: vehicle): …"
             )
-        known = ", ".join(dict.fromkeys(x for x, _ in there if x not in SIGNALS))
+        known = ", ".join(dict.fromkeys(x for x, _ in present if x not in SIGNALS))
         raise InputError(
             f"{source}: there is no column {name}, which signal {name} is read from; "
-            f"{f'of own signals there are {known}' if known else 'there is none of any own signal'}. CSV, "
-            "Parquet and frames may have such columns; or say what it is: signal … derived by …"
+            f"{f'of custom signals there are {known}' if known else 'there is none of any custom signal'}. "
+            "CSV, Parquet and frames may have such columns; or say what it is: signal … derived by …"
         )
 
 

@@ -11,8 +11,8 @@ from roadproof.extensions.traffic.formats.plausible import (
     LARGEST_ACCELERATION,
     LARGEST_SIZE,
     LARGEST_SPEED,
+    Contradiction,
     ContradictionChecks,
-    Implausible,
 )
 from roadproof.extensions.traffic.formats.recording import (
     ZONES,
@@ -25,7 +25,7 @@ from roadproof.extensions.traffic.formats.recording import (
 )
 from roadproof.extensions.traffic.formats.samples import LARGEST_PLACE
 from roadproof.extensions.traffic.formats.straight import Placement, StraightRoad, place
-from roadproof.extensions.traffic.formats.table import reach_of
+from roadproof.extensions.traffic.formats.table import largest_magnitude
 from roadproof.world.signals import RECORDED
 
 _TURNED = 1.5
@@ -56,34 +56,39 @@ class PlausibilityChecks:
         self.rows += len(recording.s)
 
     def notes(self, known: Sequence[str]) -> tuple[str, ...]:
-        """What the recording contradicts itself in and ``known`` notes leave out. Raises ``InputError``."""
+        """Return the contradictions that the ``known`` notes do not mention. Raises ``InputError``."""
         ids = np.concatenate(self.ids)
         if (np.diff(ids) <= 0).any():
             raise InputError(f"{self.head}, vehicle_id: ids must differ and ascend")
-        return tuple(told for told, why in self._doubts(ids) if not any(why in note for note in known))
+        return tuple(
+            text for text, why in self._contradictions(ids) if not any(why in note for note in known)
+        )
 
-    def _doubts(self, ids: Integers) -> Iterator[tuple[str, str]]:
-        for doubt in self.doubting.doubts():
-            yield self._told(self._at(doubt, ids), doubt.told, doubt.refused), doubt.told
+    def _contradictions(self, ids: Integers) -> Iterator[tuple[str, str]]:
+        for contradiction in self.doubting.contradictions():
+            yield (
+                self._note(self._at(contradiction, ids), contradiction.text, contradiction.refused),
+                contradiction.text,
+            )
         off = self.doubting.off_road()
         if off is not None:
-            told = f"on no lane at any time, like {off.count} vehicles"
-            yield self._told(f"vehicle {ids[off.vehicle]}", told, off.refused), f"like {off.count} "
+            text = f"on no lane at any time, like {off.count} vehicles"
+            yield self._note(f"vehicle {ids[off.vehicle]}", text, off.refused), f"like {off.count} "
 
-    def _at(self, doubt: Implausible, ids: Integers) -> str:
+    def _at(self, contradiction: Contradiction, ids: Integers) -> str:
         start, first = (np.concatenate([x[k] for x in self.frames]) for k in (0, 1))
-        vehicle = int(np.searchsorted(start, doubt.row, "right")) - 1
-        frame = int(first[vehicle] + doubt.row - start[vehicle])
-        return f"{doubt.signal} of vehicle {ids[vehicle]} at frame {frame}"
+        vehicle = int(np.searchsorted(start, contradiction.row, "right")) - 1
+        frame = int(first[vehicle] + contradiction.row - start[vehicle])
+        return f"{contradiction.signal} of vehicle {ids[vehicle]} at frame {frame}"
 
-    def _told(self, where: str, told: str, refused: bool) -> str:
+    def _note(self, where: str, text: str, refused: bool) -> str:
         if refused:
-            raise InputError(f"{self.head}, {where}: {told}")
-        return f"{self.head.name}, {where}: {told}"
+            raise InputError(f"{self.head}, {where}: {text}")
+        return f"{self.head.name}, {where}: {text}"
 
 
 def _check_cells(head: Path, recording: Recording) -> None:
-    """No cell says what no vehicle does, and none is of a lane or zone that is not there."""
+    """Refuse cells with impossible values, and cells of lanes or zones that the road lacks."""
     straight = recording.slack is None
     turned, place, across = (
         (1.0, LARGEST_PLACE, LARGEST_ACCELERATION) if straight else (_TURNED, np.inf, np.inf)
@@ -91,22 +96,22 @@ def _check_cells(head: Path, recording: Recording) -> None:
     speed, along = LARGEST_SPEED * turned, LARGEST_ACCELERATION * turned
     for column, most in zip(RECORDED, (place, place, speed, speed, along, across), strict=True):
         values: Floats = getattr(recording, column)
-        reach = reach_of(values)
+        reach = largest_magnitude(values)
         if reach <= most and reach < np.inf:
             continue
         fine = np.isfinite(values) & (np.abs(values) <= most)
-        _require(head, recording, fine, column, f"must be finite and lie between {-most:g} and {most:g}")
+        _require_all(head, recording, fine, column, f"must be finite and lie between {-most:g} and {most:g}")
     for name in ("length", "width"):
         size: Floats = getattr(recording, name)
         if not (np.isfinite(size) & (size > 0) & (size <= LARGEST_SIZE)).all():
             raise InputError(f"{head}, {name}: sizes are greater than 0 and at most {LARGEST_SIZE:g} m")
     lanes = len(recording.lanes)
     there = (recording.lane >= -1) & (recording.lane < lanes)
-    _require(head, recording, there, "lane", f"there are {lanes} lanes")
+    _require_all(head, recording, there, "lane", f"there are {lanes} lanes")
     for name, bits in (("occupancy", lanes), ("zones", len(ZONES))):
         if int(getattr(recording, name).max()) >> bits:
             known = getattr(recording, name).astype(np.int64) >> bits == 0
-            _require(head, recording, known, name, "no such bit")
+            _require_all(head, recording, known, name, "no such bit")
 
 
 def _check_places(head: Path, recording: Recording) -> None:
@@ -124,20 +129,20 @@ def _check_places(head: Path, recording: Recording) -> None:
         return
     least, most = _placed(recording, road, -_ROUNDING), _placed(recording, road, _ROUNDING)
     for name in ("occupancy", "zones", "inside"):
-        low, found, high = (getattr(x, name) for x in (least, recording, most))
-        fine = (low & ~found == 0) & (found & ~high == 0)
+        low, actual, high = (getattr(x, name) for x in (least, recording, most))
+        fine = (low & ~actual == 0) & (actual & ~high == 0)
         rows = fine.all(axis=1) if fine.ndim > 1 else fine
-        _require(head, recording, rows, name, "the box and the road say otherwise")
+        _require_all(head, recording, rows, name, "the box and the road say otherwise")
     lane = recording.lane
     centre = (lane == least.lane) | (lane == placed.lane) | (lane == most.lane)
-    _require(head, recording, centre, "lane", "the centre of the box and the road say otherwise")
+    _require_all(head, recording, centre, "lane", "the centre of the box and the road say otherwise")
 
 
 _PLACED = ("occupancy", "lane", "zones", "inside")
 
 
 def _placed(recording: Recording, road: StraightRoad, more: float) -> Placement:
-    """Where boxes are that are larger by ``more`` (m) in both directions."""
+    """Return where boxes are that are larger by ``more`` (m) in both directions."""
     counts = np.diff(recording.start)
     direction = np.repeat(recording.direction, counts)
     length, width = (np.repeat(x, counts) + more for x in (recording.length, recording.width))
@@ -152,16 +157,18 @@ def _check_lanelets(head: Path, recording: Recording) -> None:
         ("zones", lambda j: ZONES.index(recording.lanelets[j].zone)),
     )
     for name, bit_of in masks:
-        found = np.zeros(len(recording.s), np.uint32)
+        from_lanelets = np.zeros(len(recording.s), np.uint32)
         for j in range(recording.inside.shape[1]):
-            found |= recording.inside[:, j].astype(np.uint32) << np.uint32(bit_of(j))
-        _require(head, recording, found == getattr(recording, name), name, "the lanelets say otherwise")
+            from_lanelets |= recording.inside[:, j].astype(np.uint32) << np.uint32(bit_of(j))
+        _require_all(
+            head, recording, from_lanelets == getattr(recording, name), name, "the lanelets say otherwise"
+        )
     own = np.array([1 << k for k in range(len(recording.lanes))] + [0xFFFFFFFF], np.uint32)
-    held = (recording.lane < 0) | (recording.occupancy & own[recording.lane] != 0)
-    _require(head, recording, held, "lane", "the box is not on that lane")
+    on_lane = (recording.lane < 0) | (recording.occupancy & own[recording.lane] != 0)
+    _require_all(head, recording, on_lane, "lane", "the box is not on that lane")
 
 
-def _require(head: Path, recording: Recording, fine: Bools, column: str, rule: str) -> None:
+def _require_all(head: Path, recording: Recording, fine: Bools, column: str, rule: str) -> None:
     """Raise ``InputError`` for the first sample that is not ``fine``."""
     if fine.all():
         return

@@ -56,13 +56,13 @@ class Clock:
 
     def frames(self, times: Floats) -> Integers:
         """The nearest frame of each time."""
-        found: Integers = np.round((times - self.begin) * float(self.rate)).astype(np.int64)
-        return found
+        nearest: Integers = np.round((times - self.begin) * float(self.rate)).astype(np.int64)
+        return nearest
 
     def misses(self, times: Floats) -> Floats:
-        """How far (s) each time is from its frame."""
-        found: Floats = np.abs(times - self.begin - self.frames(times) / float(self.rate))
-        return found
+        """Return how far (s) each time is from its frame."""
+        distances: Floats = np.abs(times - self.begin - self.frames(times) / float(self.rate))
+        return distances
 
 
 def clock_of(path: Path, times: Floats, steps: Floats, counts: Integers) -> Clock:
@@ -79,8 +79,8 @@ def clock_of(path: Path, times: Floats, steps: Floats, counts: Integers) -> Cloc
     unit = _unit_of(times)
     usual, mean = _usual_step(steps, counts, unit)
     if not 1 / LARGEST_RATE / 1.001 <= mean <= LONGEST_STEP:
-        told = f"a step lies between {1 / LARGEST_RATE:g} and {LONGEST_STEP} s"
-        raise InputError(f"{path}: time goes on by {mean:g} s; {told}")
+        rule = f"a step lies between {1 / LARGEST_RATE:g} and {LONGEST_STEP} s"
+        raise InputError(f"{path}: time goes on by {mean:g} s; {rule}")
     exact, near = 1 / Fraction(repr(round(usual, _DECIMALS))), _spacing(times)
     mean = _fitted_step(times, mean, 2 * unit + _JITTER + near)
     span = max(1.0, float(times[-1] - times[0]) / mean)
@@ -124,14 +124,14 @@ def rate_near(step: float) -> Rate:
     >>> rate_near(0.0333), rate_near(0.04), rate_near(0.15)
     (30, 25, Fraction(20, 3))
     """
-    told = Fraction(repr(step))
+    stated = Fraction(repr(step))
     unit = Fraction(
         1, 10 ** max(3, min(_DECIMALS, -int(Decimal(repr(step)).normalize().as_tuple().exponent)))
     )
-    whole = round(1 / told)
-    if whole >= 1 and abs(Fraction(1, whole) - told) <= unit / 2:
+    whole = round(1 / stated)
+    if whole >= 1 and abs(Fraction(1, whole) - stated) <= unit / 2:
         return whole
-    return rate_for(told)
+    return rate_for(stated)
 
 
 def _whole(rate: Fraction) -> Rate:

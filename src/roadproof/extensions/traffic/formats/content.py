@@ -4,7 +4,7 @@ import codecs
 import csv
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -14,14 +14,13 @@ import numpy as np
 import numpy.typing as npt
 
 from roadproof.errors import InputError
-from roadproof.runtime.file_kind import other_format
 from roadproof.runtime.files import refuse_name
 
 _THOUSANDS = re.compile(r"-?\d{1,3}(,\d{3})+(\.\d+)?")
 
 
 def plain_text(path: Path, content: bytes, thousands: bool = False) -> bytes:
-    """The same rows with no quotes, no spaces beside commas, and with line feeds. Raises ``InputError``.
+    """Return the rows without quotes and spaces beside commas, ended by line feeds. Raises ``InputError``.
 
     A quoted cell with a comma or a line break in it is refused: no column of a format has such cells, but for
     numbers such as "1,118,846,979" where commas part ``thousands``.
@@ -55,7 +54,7 @@ _MARK = b"\xef\xbb\xbf"
 
 @dataclass(frozen=True)
 class ByteCounts:
-    """How many lines and commas there are, and whether there is a quote, and a byte that is no ASCII text.
+    """The numbers of lines and commas in bytes, and whether they have a quote or a byte outside ASCII text.
 
     ``spaced``: whether a comma has a space beside it.
     """
@@ -69,7 +68,7 @@ class ByteCounts:
 
 @dataclass(frozen=True)
 class Content:
-    """What is in a file, without the mark of UTF-8: looked at piece by piece, and not kept.
+    """The content of a file without a byte order mark, read in pieces and not held in memory.
 
     ``kept``: of what is no file on a disk, which can be read once, and of files with quoted cells or other
     line ends, as they are without. ``stamp`` changes when the file does.
@@ -84,23 +83,27 @@ class Content:
         """Raises ``InputError`` for a file that cannot be read or is empty. ``thousands``: see plain_text."""
         refuse_name(path)
         try:
-            kept = None if path.is_file() else path.read_bytes().removeprefix(_MARK)
-            found = cls(path, stamp_of(path), kept)
-            empty = not found.beginning() or (found.beginning().isspace() and found.all().isspace())
-            if not empty and found.needs_change():
-                found = cls(path, found.stamp, plain_text(path, found.all(), thousands))
+            in_memory = None if path.is_file() else path.read_bytes().removeprefix(_MARK)
+            content = cls(path, stamp_of(path), in_memory)
+            empty = not content.beginning() or (content.beginning().isspace() and content.all().isspace())
+            if not empty and content.needs_change():
+                content = cls(path, content.stamp, plain_text(path, content.all(), thousands))
         except OSError as error:
             raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
         if empty:
             raise InputError(f"{path}: the file is empty; get it again from its source")
-        return found
+        return content
 
     def open(self) -> BinaryIO:
         """The content, to be read."""
         return self.path.open("rb") if self.kept is None else io.BytesIO(self.kept)
 
     def needs_change(self) -> bool:
-        """Whether cells are quoted, or lines end with a carriage return alone; False of what is no text."""
+        """Return whether cells are quoted, or lines end with a carriage return alone; False of what is no
+        text.
+        """
+        from roadproof.runtime.file_kind import other_format  # here: writers load this module, too
+
         first = self.beginning()
         if b"\0" in first or other_format(first) is not None:
             return False
@@ -108,19 +111,19 @@ class Content:
 
     @cached_property
     def counts(self) -> ByteCounts:
-        """What is counted in all of it, in one pass."""
+        """The counts over the whole content, from one pass."""
         lines, commas, quoted, strange, spaced = 0, 0, False, False, False
         for piece in self.pieces():
-            found = np.frombuffer(piece, np.uint8)
-            lines += int(np.count_nonzero(found == ord("\n")))
-            commas += int(np.count_nonzero(found == ord(",")))
+            codes = np.frombuffer(piece, np.uint8)
+            lines += int(np.count_nonzero(codes == ord("\n")))
+            commas += int(np.count_nonzero(codes == ord(",")))
             quoted = quoted or b'"' in piece
-            strange = strange or is_strange(found)
+            strange = strange or is_strange(codes)
             spaced = spaced or b", " in piece or b" ," in piece
         return ByteCounts(lines, commas, quoted, strange, spaced)
 
     def pieces(self, size: int = 1 << 18) -> Iterator[bytes]:
-        """All of it, in pieces that by default fit the cache."""
+        """Yield the content in pieces that by default fit the cache."""
         with self.open() as file:
             if file.read(len(_MARK)) != _MARK or self.kept is not None:
                 file.seek(0)
@@ -132,7 +135,7 @@ class Content:
         return next(self.pieces(), b"")
 
     def ends_line(self) -> bool:
-        """Whether it ends with a line break."""
+        """Return whether it ends with a line break."""
         if self.kept is not None:
             return self.kept.endswith(b"\n")
         with self.path.open("rb") as file:
@@ -143,7 +146,7 @@ class Content:
         return b"".join(self.pieces())
 
     def source(self) -> Path | bytes:
-        """What polars is to read; the file itself where it has no mark."""
+        """Return the source for polars: the file itself, unless it has a byte order mark."""
         if self.kept is not None:
             return self.kept
         with self.path.open("rb") as file:
@@ -156,7 +159,7 @@ class Content:
 
 
 def is_strange(piece: npt.NDArray[np.uint8]) -> bool:
-    """Whether a byte of a piece is part of no table of numbers."""
+    """Return whether a byte of a piece is part of no table of numbers."""
     return bool(piece.max() > 127 or not piece.min())
 
 
@@ -167,16 +170,16 @@ def require_unchanged(path: Path, stamp: tuple[int, ...]) -> None:
 
 
 def stamp_of(path: Path) -> tuple[int, ...]:
-    """What changes when a file does; nothing of one that is gone."""
+    """Return device, inode, size and time of a file, to notice changes; nothing for a missing file."""
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return ()
-    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
+    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
 
 
 def is_utf_8(content: Content) -> bool:
-    """Whether the content is text in UTF-8, in which names may have letters of any script."""
+    """Return whether the content is text in UTF-8, in which names may have letters of any script."""
     decoder = codecs.getincrementaldecoder("utf-8")()
     try:
         return all("\0" not in decoder.decode(piece) for piece in content.pieces()) and not decoder.decode(
@@ -204,3 +207,16 @@ def _first_undecodable(text: bytes) -> int:
     except UnicodeDecodeError as error:
         return error.start
     return -1
+
+
+def columns_not_read_note(
+    path: Path, names: Iterable[str], read: Iterable[str], harmless: Mapping[str, str], strict: bool
+) -> tuple[str, ...]:
+    """Return a note on columns: ``names`` in a file that are neither ``read`` nor ``harmless``.
+
+    Raises ``InputError`` instead if ``strict``.
+    """
+    from roadproof.world.not_read import not_read_note  # here: writers load this module, too
+
+    known = {*read, *harmless}
+    return not_read_note(path, [f"column {x}" for x in names if x not in known], strict)

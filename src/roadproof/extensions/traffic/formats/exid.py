@@ -23,29 +23,30 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.extensions.maps.lanelet2 import Bounded, directed, lanelets_among, tag_of
-from roadproof.extensions.maps.lanelet2 import unread_of as unread_parts
+from roadproof.extensions.maps.lanelet2 import LaneletBounds, directed, lanelets_among, tag_of
+from roadproof.extensions.maps.lanelet2 import omitted_parts as unread_parts
 from roadproof.extensions.maps.lines import way_along
 from roadproof.extensions.maps.network import ZONES_ENDING
 from roadproof.extensions.maps.projections import UtmPoint, utm_of
 from roadproof.extensions.maps.topology import MeasuredLanelet
-from roadproof.extensions.traffic.formats.contradictions import seldom
+from roadproof.extensions.maps.xml_reader import Element, by_id, number_in, read_xml
+from roadproof.extensions.traffic.formats.contradictions import note_if_rare
 from roadproof.extensions.traffic.formats.lanelets import network_of
 from roadproof.extensions.traffic.formats.levelx import (
     check_cells,
     check_plausible,
     check_velocities,
-    read_about,
+    ignored_column_notes,
+    read_recording_meta,
     read_samples,
     read_vehicles,
     traffic_of,
-    unread_of,
 )
 from roadproof.extensions.traffic.formats.measured_roads import place_traffic
 from roadproof.extensions.traffic.formats.recording import Floats, Integers, Recording, with_notes
-from roadproof.extensions.traffic.formats.reliable import reliable
+from roadproof.extensions.traffic.formats.reliable import reliable_part
 from roadproof.extensions.traffic.formats.source import Files, Format, beside, first_line
-from roadproof.extensions.traffic.formats.table import Table
+from roadproof.extensions.traffic.formats.table import ColumnTable
 from roadproof.extensions.traffic.formats.tracks import (
     RATE_AT,
     files_of,
@@ -53,8 +54,7 @@ from roadproof.extensions.traffic.formats.tracks import (
     read_tracks,
     usable,
 )
-from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
-from roadproof.world.unread import LEFT_OUT, unread_note
+from roadproof.world.not_read import LEFT_OUT, not_read_note
 
 NO_LANES = frozenset(
     "emergency_lane walkway shared_walkway crosswalk stairs bicycle_lane rail parking".split()  # noqa: SIM905
@@ -68,7 +68,7 @@ class _LaneletNodes:
 
     id: str
     ways: tuple[str, str]
-    bounds: Bounded
+    bounds: LaneletBounds
 
 
 @dataclass(frozen=True)
@@ -95,8 +95,8 @@ def read_osm(path: Path, origin: UtmPoint) -> ReadMap:
     refs = {name: _nodes_of(path, name, way, nodes) for name, way in ways.items()}
     places = _places(path, {ref: nodes[ref] for way in refs.values() for ref in way}, origin)
     drawn = {name: _draw(path, name, x, refs, places) for name, x in relations.items()}
-    told = ", ".join(f"{count} of kind {kind}" for kind, count in sorted(others.items()))
-    notes = (f"{LEFT_OUT} lanelets of {path.name} that are no lanes of the road: {told}",) if told else ()
+    kinds = ", ".join(f"{count} of kind {kind}" for kind, count in sorted(others.items()))
+    notes = (f"{LEFT_OUT} lanelets of {path.name} that are no lanes of the road: {kinds}",) if kinds else ()
     return ReadMap(_linked(drawn), notes, unread_parts(root))
 
 
@@ -109,7 +109,7 @@ def _nodes_of(path: Path, name: str, way: Element, nodes: Mapping[str, Element])
 
 
 def _places(path: Path, nodes: Mapping[str, Element], origin: UtmPoint) -> dict[str, Floats]:
-    """x and y of each node that a way uses."""
+    """Return x and y of each node that a way uses."""
     local = {name for name, node in nodes.items() if tag_of(node, "local_x") or tag_of(node, "local_y")}
     if local and len(local) < len(nodes):
         name = next(x for x in nodes if x not in local)
@@ -196,21 +196,21 @@ def read_exid(folder: Path, name: str, strict: bool = True) -> Recording:
 
     Raises ``InputError`` that names file, element, value and rule.
     """
-    about, rate = read_about(folder, name)
+    about, rate = read_recording_meta(folder, name)
     meta = read_vehicles(folder, name)
     tracks, notes = read_samples(folder, name, {LANELETS: "list"}, strict)
     meta, tracks, start, left_out = usable(meta, tracks, "trackId", strict, check_cells)
     notes += (*left_out, *check_velocities(tracks))
     path = _map_of(folder, int(about["locationId"][0]), about)
     chart = read_osm(path, (about["xUtmOrigin"][0], about["yUtmOrigin"][0]))
-    unread = (*unread_note(path, chart.unread, strict), *unread_of(folder, name, strict))
-    traffic = traffic_of(name, rate, meta, tracks, start, (*notes, *chart.notes, *unread))
+    not_read = (*not_read_note(path, chart.unread, strict), *ignored_column_notes(folder, name, strict))
+    traffic = traffic_of(name, rate, meta, tracks, start, (*notes, *chart.notes, *not_read))
     recording = place_traffic(traffic, network_of(path, chart.lanelets, strict))
-    stands = reliable(recording, strict, partial(check_plausible, tracks))
+    stands = reliable_part(recording, strict, partial(check_plausible, tracks))
     return with_notes(stands, _check_lanelets(tracks, recording, path))
 
 
-def _check_lanelets(tracks: Table, recording: Recording, path: Path) -> Iterator[str]:
+def _check_lanelets(tracks: ColumnTable, recording: Recording, path: Path) -> Iterator[str]:
     """laneletId lists must name lanelets of the map, and mostly one of the lane that the middle is in."""
     lane_of = {x.id: x.lane for x in recording.lanelets}
     index = {lane.name: k for k, lane in enumerate(recording.lanes)}
@@ -223,22 +223,24 @@ def _check_lanelets(tracks: Table, recording: Recording, path: Path) -> Iterator
             row = int(np.argmax(which == k))
             raise tracks.refuse(row, "laneletId", f"{path.name} has no lanelet {unknown[0]} among its lanes")
         masks[k] = sum({1 << index[lane_of[x]] for x in names if x in lane_of})
-    told: Integers = masks[which]
-    other = (told != 0) & (recording.lane >= 0) & ((told >> np.maximum(recording.lane, 0)) & 1 == 0)
+    lane_masks: Integers = masks[which]
+    other = (
+        (lane_masks != 0) & (recording.lane >= 0) & ((lane_masks >> np.maximum(recording.lane, 0)) & 1 == 0)
+    )
     advice = f"do {path.name} and the positions fit?"
-    yield from seldom(tracks, other, "laneletId", "not the lane of the box's middle", advice)
+    yield from note_if_rare(tracks, other, "laneletId", "not the lane of the box's middle", advice)
 
 
 def maps_near(folder: Path) -> list[Path]:
     """The .osm files that a recording of ``folder`` may be on."""
     for place in (folder, *(x / name for x in (folder, folder.parent) for name in ("maps", "lanelets"))):
-        found = sorted(place.glob("*.osm") if place == folder else place.rglob("*.osm"))
-        if found:
-            return found
+        maps = sorted(place.glob("*.osm") if place == folder else place.rglob("*.osm"))
+        if maps:
+            return maps
     return []
 
 
-def _map_of(folder: Path, location: int, about: Table) -> Path:
+def _map_of(folder: Path, location: int, about: ColumnTable) -> Path:
     maps = maps_near(folder)
     named = [x for x in maps if location in map(int, re.findall(r"\d+", x.stem))]
     if len(named) != 1:
@@ -255,14 +257,14 @@ def _files(folder: Path, name: str) -> Files:
 
 
 def names_lanelets(tracks: Path) -> bool:
-    """Whether samples have the lanelets of exiD; True of no file."""
+    """Return whether samples have the lanelets of exiD; True of no file."""
     line = first_line(tracks)
     return not line or LANELETS in line.split(",")
 
 
 def _find(path: Path) -> dict[str, Files]:
-    found = find_recordings(path, with_ids=True, files=_files)
-    return {name: x for name, x in found.items() if names_lanelets(x[-1])}
+    recordings = find_recordings(path, with_ids=True, files=_files)
+    return {name: x for name, x in recordings.items() if names_lanelets(x[-1])}
 
 
 FORMAT = Format(

@@ -13,13 +13,13 @@ def _known_factor(factor: float) -> float | None:
     return next(near, None)
 
 
-def common_factor(factors: Floats, median: float, asked: int) -> float | None:
+def common_factor(factors: Floats, median: float, places: int) -> float | None:
     """The factor of a known fault near the median, or the median where most places agree on it."""
     known = _known_factor(median)
     if known is not None or not np.isfinite(median):
         return known
     agree = int(np.count_nonzero(np.abs(factors - median) <= 0.05 * abs(median)))
-    return median if 2 * agree > asked else None
+    return median if 2 * agree > places else None
 
 
 def hint_on(factor: float) -> str:

@@ -1,6 +1,6 @@
 """Columns of published recordings that are not read, since the columns that are read imply them.
 
-Other columns that are not read are named (``unread.unread_columns``).
+Other columns that are not read are named (``unread.columns_not_read_note``).
 """
 
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ _ORIGIN = "how places were found in pictures and on the earth"
 
 def _by_rule(**rules: str) -> dict[str, str]:
     """The rule of each column, from columns by rule."""
-    told = {
+    rules_by_name = {
         "about": _ABOUT,
         "counts": _COUNTS,
         "limits": _RULES,
@@ -27,7 +27,7 @@ def _by_rule(**rules: str) -> dict[str, str]:
         "turned": _TURNED,
         "origin": _ORIGIN,
     }
-    return {name: told[rule] for rule, names in rules.items() for name in names.split()}
+    return {name: rules_by_name[rule] for rule, names in rules.items() for name in names.split()}
 
 
 HIGHD: Mapping[str, str] = _by_rule(

@@ -6,7 +6,6 @@ the upper-left corner of the box, and y grows down. Direction 1 drives towards -
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,15 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.extensions.traffic.formats.clock import Rate
 from roadproof.extensions.traffic.formats.content import Content
-from roadproof.extensions.traffic.formats.contradictions import contradictions, seldom
+from roadproof.extensions.traffic.formats.contradictions import contradiction_notes, note_if_rare
+from roadproof.extensions.traffic.formats.highd_columns import (
+    LOWER,
+    RECORDING_COLUMNS,
+    SAMPLE_COLUMNS,
+    UPPER,
+    VEHICLE_COLUMNS,
+    lanes_of_markings,
+)
 from roadproof.extensions.traffic.formats.plausible import (
     LARGEST_ACCELERATION,
     LARGEST_SIZE,
@@ -31,10 +38,10 @@ from roadproof.extensions.traffic.formats.recording import (
     blockwise,
     with_notes,
 )
-from roadproof.extensions.traffic.formats.reliable import reliable
+from roadproof.extensions.traffic.formats.reliable import reliable_part
 from roadproof.extensions.traffic.formats.source import Files, Format
 from roadproof.extensions.traffic.formats.straight import StraightRoad, of_bands, of_road, place
-from roadproof.extensions.traffic.formats.table import Table, fits_kind, kinds_of, names_in, read_table
+from roadproof.extensions.traffic.formats.table import ColumnTable, fits_kind, kinds_of, read_table
 from roadproof.extensions.traffic.formats.tracks import (
     RATE_AT,
     cells_of,
@@ -66,21 +73,6 @@ _SIGNALS: Mapping[str, SignalName | SizeName] = {
 _COLUMNS = {signal: column for column, signal in _SIGNALS.items()}
 """The columns of the signals that rules of ``plausible`` are about."""
 
-RECORDING_COLUMNS = names_in(
-    "id frameRate locationId speedLimit month weekDay startTime duration totalDrivenDistance totalDrivenTime",
-    "numVehicles numCars numTrucks upperLaneMarkings lowerLaneMarkings",
-)
-VEHICLE_COLUMNS = names_in(
-    "id width height initialFrame finalFrame numFrames class drivingDirection traveledDistance",
-    "minXVelocity maxXVelocity meanXVelocity minDHW minTHW minTTC numLaneChanges",
-)
-SAMPLE_COLUMNS = names_in(
-    "frame id x y width height xVelocity yVelocity xAcceleration yAcceleration frontSightDistance",
-    "backSightDistance dhw thw ttc precedingXVelocity precedingId followingId leftPrecedingId",
-    "leftAlongsideId leftFollowingId rightPrecedingId rightAlongsideId rightFollowingId laneId",
-)
-UPPER, LOWER = 1, 2
-"""Driving directions: on the upper lanes towards -x, on the lower ones towards +x."""
 
 _RECORDING_KINDS = kinds_of(
     integer="id numVehicles numCars numTrucks", number="frameRate", text="upperLaneMarkings lowerLaneMarkings"
@@ -101,8 +93,8 @@ _LARGEST: Mapping[str, float] = {
 }
 
 
-def _check_cells(meta: Table, tracks: Table) -> Integers:
-    """Where each vehicle's samples start. No cell may say what no vehicle does.
+def _check_cells(meta: ColumnTable, tracks: ColumnTable) -> Integers:
+    """Return where each vehicle's samples start. No cell may say what no vehicle does.
 
     Both files must say the same of sizes: one of them would decide the pairs that are looked at.
     """
@@ -118,7 +110,7 @@ def _check_cells(meta: Table, tracks: Table) -> Integers:
     return start
 
 
-def _check_size(meta: Table, tracks: Table, column: str, start: Integers) -> None:
+def _check_size(meta: ColumnTable, tracks: ColumnTable, column: str, start: Integers) -> None:
     """A size is greater than zero, and the same in both files, which round to hundredths."""
     extremes = [extreme.reduceat(tracks[column], start[:-1]) for extreme in (np.minimum, np.maximum)]
     if all(((x > 0) & (np.abs(x - meta[column]) < _ROUNDED)).all() for x in extremes):
@@ -129,8 +121,8 @@ def _check_size(meta: Table, tracks: Table, column: str, start: Integers) -> Non
     tracks.require(same, column, f"{meta.path.name} has another size for the vehicle")
 
 
-def _check_direction(meta: Table, tracks: Table, s: Floats, start: Integers) -> None:
-    """No vehicle may end further back than its own length from where it began. Raises ``InputError``."""
+def _check_direction(meta: ColumnTable, tracks: ColumnTable, s: Floats, start: Integers) -> None:
+    """Refuse vehicles that end further back than their own length from their start. Raises ``InputError``."""
     backwards = s[start[1:] - 1] - s[start[:-1]] < -meta["width"]
     if backwards.any():
         k = int(np.argmax(backwards))
@@ -138,7 +130,7 @@ def _check_direction(meta: Table, tracks: Table, s: Floats, start: Integers) -> 
         raise InputError(f"{meta.path}, {where}: in {tracks.path.name} the vehicle moves the other way")
 
 
-def _check_lanes(tracks: Table, recording: Recording, marked: Bools) -> Iterator[str]:
+def _check_lanes(tracks: ColumnTable, recording: Recording, marked: Bools) -> Iterator[str]:
     """laneId must be the lane of the centre of most boxes.
 
     ``marked``: the samples whose lanes come from the markings, which laneId counts. Raises ``InputError``.
@@ -146,13 +138,15 @@ def _check_lanes(tracks: Table, recording: Recording, marked: Bools) -> Iterator
     names = np.array([int(x.name) if x.name.isdecimal() else 0 for x in recording.lanes] + [0])
     other = marked & (names.take(recording.lane) != tracks["laneId"])
     rule = "laneId is not the lane of the box's centre"
-    return seldom(tracks, other, "laneId", rule, "do markings and positions fit?")
+    return note_if_rare(tracks, other, "laneId", rule, "do markings and positions fit?")
 
 
-def _sample_rows(table: Table, header: Sequence[str], names: Sequence[str], count: int) -> list[list[float]]:
+def _sample_rows(
+    table: ColumnTable, header: Sequence[str], names: Sequence[str], count: int
+) -> list[list[float]]:
     """The numbers of ``names`` in about ``count`` rows, evenly over the file that ``read_table`` took."""
     places = [header.index(name) for name in names]
-    found = []
+    sample_rows = []
     content = table.content or Content.of(table.path)
     with content.open() as file:
         size = file.seek(0, 2)
@@ -162,12 +156,12 @@ def _sample_rows(table: Table, header: Sequence[str], names: Sequence[str], coun
             cells = file.readline().decode("utf-8", "replace").strip().split(",")
             numbers = [cells[place] for place in places] if len(cells) == len(header) else []
             if numbers and all(fits_kind(x, "number") for x in numbers):
-                found.append([float(x) for x in numbers])
-    return found
+                sample_rows.append([float(x) for x in numbers])
+    return sample_rows
 
 
-def _check_sight(meta: Table, tracks: Table) -> tuple[str, ...]:
-    """x against the distance to the end of the section, which the format counts from the box's centre.
+def _check_sight(meta: ColumnTable, tracks: ColumnTable) -> tuple[str, ...]:
+    """Compare x with the distance to the end of the section, which the format counts from the box's centre.
 
     x + width/2 less that distance is one number for short and long vehicles, unless x is not the left edge.
     """
@@ -186,16 +180,16 @@ def _check_sight(meta: Table, tracks: Table) -> tuple[str, ...]:
     slope = float(np.median(west[-third:]) - np.median(west[:third])) / spread
     if abs(slope) <= OFF_CENTRE[0]:
         return ()
-    told = (
+    message = (
         f"column x: x + width/2 and the distances to the ends of the section differ by {slope:.2f} half "
         "lengths: is x the left edge of the box?"
     )
     if abs(slope) > OFF_CENTRE[1]:
-        raise InputError(f"{tracks.path}, {told}")
-    return (f"{tracks.path.name}, {told}",)
+        raise InputError(f"{tracks.path}, {message}")
+    return (f"{tracks.path.name}, {message}",)
 
 
-def _check_plausible(whole: Table, checks: ContradictionChecks, rows: Integers) -> Iterator[str]:
+def _check_plausible(whole: ColumnTable, checks: ContradictionChecks, rows: Integers) -> Iterator[str]:
     """Notes on what the recording contradicts itself in; each vehicle must be at least once on a lane.
 
     Raises ``InputError`` where that is too much.
@@ -210,7 +204,7 @@ def _check_plausible(whole: Table, checks: ContradictionChecks, rows: Integers) 
         return f"vehicle id={tracks['id'][row]}, column y={tracks['y'][row]}"
 
     lanes, advice = "lane of its direction", "the markings do not fit"
-    return contradictions(tracks.path, checks, at, vehicle_at, lanes, advice)
+    return contradiction_notes(tracks.path, checks, at, vehicle_at, lanes, advice)
 
 
 def highd_files(folder: Path, name: str) -> Files:
@@ -264,7 +258,7 @@ def read_highd(folder: Path, name: str, strict: bool = True) -> Recording:
         notes=notes,
         **vars(placed),
     )
-    stands = reliable(recording, strict, partial(_check_plausible, tracks))
+    stands = reliable_part(recording, strict, partial(_check_plausible, tracks))
     more = (*_check_lanes(tracks, recording, direction != way), *_check_sight(meta, tracks))
     return with_notes(stands, more)
 
@@ -282,14 +276,6 @@ def _read_road(path: Path, bands: tuple[Lane, ...]) -> tuple[StraightRoad, int]:
     return of_road(road, way, path, (x for x in bands if x.direction != way)), way
 
 
-def lanes_of_markings(upper: tuple[float, ...], lower: tuple[float, ...]) -> tuple[Lane, ...]:
-    """Lanes from the y values of the markings; a lane's name is its laneId (semantics §7)."""
-    bands = [Lane(str(k), UPPER, (y, z)) for k, (y, z) in enumerate(pairwise(upper), start=2)]
-    first = len(upper) + 2
-    bands += [Lane(str(k), LOWER, (-z, -y)) for k, (y, z) in enumerate(pairwise(lower), start=first)]
-    return tuple(bands)
-
-
 def _read_recording(path: Path, name: str) -> tuple[Rate, tuple[Lane, ...], Mapping[str, int]]:
     meta = read_table(path, RECORDING_COLUMNS, _RECORDING_KINDS)
     rate = rate_of(meta, "id", int(name), f"the name of the file says recording {name}")
@@ -304,7 +290,7 @@ def _read_recording(path: Path, name: str) -> tuple[Rate, tuple[Lane, ...], Mapp
     return rate, lanes_of_markings(upper, lower), counts
 
 
-def _read_markings(meta: Table, column: str) -> tuple[float, ...]:
+def _read_markings(meta: ColumnTable, column: str) -> tuple[float, ...]:
     try:
         values = tuple(float(part) for part in str(meta[column][0]).strip().strip(";").split(";"))
     except ValueError:
@@ -315,7 +301,7 @@ def _read_markings(meta: Table, column: str) -> tuple[float, ...]:
     return values
 
 
-def _read_vehicles(path: Path, counts: Mapping[str, int]) -> Table:
+def _read_vehicles(path: Path, counts: Mapping[str, int]) -> ColumnTable:
     meta = read_table(path, VEHICLE_COLUMNS, _VEHICLE_KINDS)
     meta.require(meta["id"] > 0, "id", "an id is greater than zero, which stands for no vehicle")
     for column in ("width", "height"):
@@ -325,10 +311,10 @@ def _read_vehicles(path: Path, counts: Mapping[str, int]) -> Table:
     kinds = meta["class"].astype(np.str_)
     meta.require(np.isin(kinds, list(counts)), "class", f"must be {' or '.join(counts)}")
     for kind, expected in counts.items():
-        found = int(np.count_nonzero(kinds == kind))
-        if found != expected:
-            told = f"{found} vehicles of class {kind}, but the recordingMeta file counts {expected}"
-            raise InputError(f"{path}: {told}")
+        count = int(np.count_nonzero(kinds == kind))
+        if count != expected:
+            message = f"{count} vehicles of class {kind}, but the recordingMeta file counts {expected}"
+            raise InputError(f"{path}: {message}")
     return ordered
 
 

@@ -22,18 +22,18 @@ from roadproof.extensions.traffic.formats.levelx import (
     check_cells,
     check_plausible,
     check_velocities,
-    read_about,
+    ignored_column_notes,
+    read_recording_meta,
     read_samples,
     read_vehicles,
     traffic_of,
-    unread_of,
 )
 from roadproof.extensions.traffic.formats.off_line import follows_line, leave_out_strays
 from roadproof.extensions.traffic.formats.recording import Recording
-from roadproof.extensions.traffic.formats.reliable import left_out_note, reliable
+from roadproof.extensions.traffic.formats.reliable import left_out_note, reliable_part
 from roadproof.extensions.traffic.formats.selected_roads import chart_of, place_on_road
 from roadproof.extensions.traffic.formats.source import Files, Format, beside
-from roadproof.extensions.traffic.formats.table import Table
+from roadproof.extensions.traffic.formats.table import ColumnTable
 from roadproof.extensions.traffic.formats.tracks import (
     RATE_AT,
     TRACKS,
@@ -42,7 +42,7 @@ from roadproof.extensions.traffic.formats.tracks import (
     read_tracks,
     usable,
 )
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 
 NO_VEHICLES: Mapping[str, str] = {"pedestrian": "pedestrians", "bicycle": "cyclists", "animal": "animals"}
 """Classes that are no vehicles in traffic."""
@@ -55,26 +55,26 @@ def read_ind(folder: Path, name: str, strict: bool = True, road: str | None = No
     said.
     """
     chart_of(road, folder / f"{name}{TRACKS}", maps_near(folder))
-    about, rate = read_about(folder, name)
+    about, rate = read_recording_meta(folder, name)
     meta = read_vehicles(folder, name)
     tracks, notes = read_samples(folder, name, {}, strict)
     meta, tracks, absent = _vehicles(meta, tracks)
     meta, tracks, start, left_out = usable(meta, tracks, "trackId", strict, check_cells)
-    notes += (*absent, *left_out, *unread_of(folder, name, strict), *check_velocities(tracks))
+    notes += (*absent, *left_out, *ignored_column_notes(folder, name, strict), *check_velocities(tracks))
     traffic = traffic_of(str(tracks.path), rate, meta, tracks, start, notes)
     origin = float(about["xUtmOrigin"][0]), float(about["yUtmOrigin"][0])
     recording, rows = place_on_road(traffic, str(road), origin, strict)
     fits = follows_line(traffic.centre[rows], recording)
     fitting = leave_out_strays(replace(recording, name=name), fits, strict)
     rows = rows[np.repeat(fits, np.diff(recording.start))]
-    return reliable(fitting, strict, partial(check_plausible, tracks.at(rows)))
+    return reliable_part(fitting, strict, partial(check_plausible, tracks.at(rows)))
 
 
-def _vehicles(meta: Table, tracks: Table) -> tuple[Table, Table, list[str]]:
+def _vehicles(meta: ColumnTable, tracks: ColumnTable) -> tuple[ColumnTable, ColumnTable, list[str]]:
     """The tables without pedestrians and the like, which have no size, and notes on these."""
     kinds = np.array([NO_VEHICLES.get(str(x).lower(), "") for x in meta["class"]])
     notes = [
-        left_out_note(meta["trackId"][kinds == what].tolist(), meta.rows, Why.OF_KIND(what))
+        left_out_note(meta["trackId"][kinds == what].tolist(), meta.rows, ReasonKind.OF_KIND(what))
         for what in dict.fromkeys(kinds.tolist())
         if what
     ]
@@ -92,13 +92,13 @@ def _vehicles(meta: Table, tracks: Table) -> tuple[Table, Table, list[str]]:
 
 def _find(path: Path, road: str | None = None) -> dict[str, Files]:
     """Recordings without lanelets; with a road those of the location in its map's name, if there are any."""
-    found = find_recordings(path, with_ids=True, files=files_of)
-    found = {name: x for name, x in found.items() if not names_lanelets(x[-1])}
+    recordings = find_recordings(path, with_ids=True, files=files_of)
+    recordings = {name: x for name, x in recordings.items() if not names_lanelets(x[-1])}
     if road is None:
-        return found
+        return recordings
     chart = Path(road.partition("#")[0])
     numbers = {int(x) for x in re.findall(r"\d+", chart.stem)}
-    there = {name: x for name, x in found.items() if _location(x[0]) in numbers} or found
+    there = {name: x for name, x in recordings.items() if _location(x[0]) in numbers} or recordings
     charts = (*beside(chart, ZONES_ENDING), *((chart,) if chart.is_file() else ()))
     return {name: (*charts, *x) for name, x in there.items()}
 

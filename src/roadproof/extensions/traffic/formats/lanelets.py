@@ -16,14 +16,14 @@ def network_of(path: Path, lanelets: Mapping[str, MeasuredLanelet], strict: bool
 
     Raises ``InputError`` for more than 32 lanes where it is ``strict``.
     """
-    found = maps.network_of(path, lanelets)
-    if strict and len(found.lanes) > MOST_LANES:
-        told = f"{len(found.lanes)} lanes; at most {MOST_LANES} are supported, cut out a part"
-        raise InputError(f"{path}: {told}")
-    return found
+    network = maps.network_of(path, lanelets)
+    if strict and len(network.lanes) > MOST_LANES:
+        message = f"{len(network.lanes)} lanes; at most {MOST_LANES} are supported, cut out a part"
+        raise InputError(f"{path}: {message}")
+    return network
 
 
-def used_lanes(
+def with_used_lanes(
     network: Network, is_used: Callable[[MeasuredLanelet], bool], name: str
 ) -> tuple[Network, tuple[str, ...]]:
     """The network with the lanes that ``is_used`` says are used, where it has more than a mask has bits.
@@ -36,9 +36,9 @@ def used_lanes(
         return network, ()
     lanes = tuple(x for x in known if any(is_used(network.lanelets[y]) for y in x.lanelets))
     if len(lanes) > MOST_LANES:
-        told = f"vehicles are in {len(lanes)} lanes; at most {MOST_LANES} are supported, cut out a part"
-        raise InputError(f"{name}: {told}")
+        message = f"vehicles are in {len(lanes)} lanes; at most {MOST_LANES} are supported, cut out a part"
+        raise InputError(f"{name}: {message}")
     names = {x.name for x in lanes}
     beside = frozenset(pair for pair in network.beside if pair <= names)
-    told = f"left out {len(known) - len(lanes)} of {len(known)} lanes: no vehicle is ever in them"
-    return replace(network, lanes=lanes, beside=beside), (told,)
+    message = f"left out {len(known) - len(lanes)} of {len(known)} lanes: no vehicle is ever in them"
+    return replace(network, lanes=lanes, beside=beside), (message,)

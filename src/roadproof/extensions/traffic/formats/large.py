@@ -17,13 +17,13 @@ from roadproof.errors import InputError
 from roadproof.extensions.traffic.formats import windows
 from roadproof.extensions.traffic.formats.clock import Clock, clock_of
 from roadproof.extensions.traffic.formats.content import require_unchanged, stamp_of
-from roadproof.extensions.traffic.formats.contradictions import contradictions
+from roadproof.extensions.traffic.formats.contradictions import contradiction_notes
 from roadproof.extensions.traffic.formats.converted import (
     HEAD,
     SAMPLES,
     divide_converted,
     frame_of_samples,
-    head_of,
+    full_metadata,
     read_converted,
 )
 from roadproof.extensions.traffic.formats.plausible import ContradictionChecks
@@ -36,26 +36,26 @@ from roadproof.extensions.traffic.formats.recording import (
 )
 from roadproof.extensions.traffic.formats.reliable import (
     MOST_LEFT_OUT,
-    Selection,
+    VehicleSelection,
     left_out_note,
     selection_of,
     stands,
     too_many,
 )
-from roadproof.extensions.traffic.formats.row_order import Mended, by_time, by_vehicle, steps_of
+from roadproof.extensions.traffic.formats.row_order import RowRepairs, by_time, by_vehicle, steps_of
 from roadproof.extensions.traffic.formats.samples import (
     column_pieces,
     count_samples,
+    ignored_column_notes,
+    ignored_map_notes,
     number_vehicles,
     road_of,
-    unread_of,
-    unread_of_named,
     vehicles_of,
 )
 from roadproof.extensions.traffic.formats.straight import StraightRoad
-from roadproof.extensions.traffic.formats.table import CellError, Table, polars_module
-from roadproof.extensions.traffic.formats.windows import Window, WindowedRecording
-from roadproof.reasons import Why
+from roadproof.extensions.traffic.formats.table import CellError, ColumnTable, polars_module
+from roadproof.extensions.traffic.formats.windows import TimeWindow, WindowedRecording
+from roadproof.reasons import ReasonKind
 from roadproof.runtime.files import write_json
 
 _LEAST = 24
@@ -64,7 +64,7 @@ _PLACE, _GROUP = "place in the file", "group of vehicles"
 
 
 def is_large(path: Path) -> bool:
-    """Whether a file of samples has more than are read as a whole. Raises ``InputError``."""
+    """Return whether a file of samples has more than are read as a whole. Raises ``InputError``."""
     if path.suffix != ".parquet" and path.stat().st_size < _LEAST * windows.MOST_SAMPLES:
         return False
     return count_samples(path) > windows.MOST_SAMPLES
@@ -83,7 +83,7 @@ def divide_large(path: Path, strict: bool = True, road: str | None = None) -> Wi
     head = write_large(path, Path(folder.name), {}, "", strict, road)
     made = divide_converted(head, checked=True) or windows.undivided(read_converted(head))
 
-    def read() -> Iterator[Window]:
+    def read() -> Iterator[TimeWindow]:
         with folder:
             yield from made.windows()
 
@@ -103,7 +103,7 @@ def write_large(
     ``digests`` of what it is made of, in the format called ``form``. Unless it is ``strict``, bad vehicles
     are left out. Raises ``InputError``.
     """
-    lanes, unread = road_of(path, road), unread_of_named(road, strict)
+    lanes, not_read = road_of(path, road), ignored_map_notes(road, strict)
     with tempfile.TemporaryDirectory(dir=folder, prefix=".") as temporary:
         stamp = stamp_of(path)
         survey = _survey(path, strict)
@@ -112,34 +112,36 @@ def write_large(
         require_unchanged(path, stamp)
         read = _GroupReader(path, lanes, survey, groups, strict)
         read.begin()
-        made = _write_parts(read, Selection(), Path(temporary))
+        made = _write_parts(read, VehicleSelection(), Path(temporary))
         if not strict and not stands(made.checks):
-            made = _write_parts(read, _chosen(read, made.checks), Path(temporary))
-        whole = _joined(made.heads)
+            made = _write_parts(read, _vehicles_to_leave_out(read, made.checks), Path(temporary))
+        whole = _concatenated(made.heads)
         chosen = made.chosen
-        notes = (*unread, *read.notes, *chosen.notes, *read.doubts(made))
+        notes = (*not_read, *read.notes, *chosen.notes, *read.contradiction_notes(made))
         table, head = folder / f"{path.stem}{SAMPLES}", folder / f"{path.stem}{HEAD}"
         head.unlink(missing_ok=True)  # it is there when the samples are
-        _join(made.parts, Path(temporary) / "whole", table)
+        _join_files(made.parts, Path(temporary) / "whole", table)
         with table.open("rb") as file:
             digest = hashlib.file_digest(file, "sha256").hexdigest()
-        write_json(head, head_of(replace(whole, notes=notes), form, digests, int(whole.start[-1]), digest))
+        write_json(
+            head, full_metadata(replace(whole, notes=notes), form, digests, int(whole.start[-1]), digest)
+        )
     return head
 
 
 @dataclass(frozen=True)
-class _Written:
+class _WrittenParts:
     """Files with the samples of groups of vehicles, the vehicles, and checks of all together."""
 
-    chosen: Selection
+    chosen: VehicleSelection
     checks: ContradictionChecks
     heads: list[Recording]
     parts: list[Path]
 
 
-def _write_parts(read: "_GroupReader", chosen: Selection, folder: Path) -> _Written:
+def _write_parts(read: "_GroupReader", chosen: VehicleSelection, folder: Path) -> _WrittenParts:
     """Write the vehicles of each group that are ``chosen``."""
-    made = _Written(chosen, ContradictionChecks(read.clock.rate, read.road.lanes), [], [])
+    made = _WrittenParts(chosen, ContradictionChecks(read.clock.rate, read.road.lanes), [], [])
     for number, group in enumerate(read.recordings()):
         recording = chosen.of(group)
         made.checks.add(recording)
@@ -150,21 +152,21 @@ def _write_parts(read: "_GroupReader", chosen: Selection, folder: Path) -> _Writ
     return made
 
 
-def _chosen(read: "_GroupReader", checks: ContradictionChecks) -> Selection:
-    """What to leave out. Raises ``InputError`` where that is more than half."""
+def _vehicles_to_leave_out(read: "_GroupReader", checks: ContradictionChecks) -> VehicleSelection:
+    """Return the vehicles to leave out. Raises ``InputError`` where they are more than half."""
     chosen = selection_of(read.recordings)
     if len(chosen.lost) <= MOST_LEFT_OUT * chosen.vehicles:
         return chosen
     try:
-        [*read.doubts(_Written(Selection(), checks, [], []))]
+        [*read.contradiction_notes(_WrittenParts(VehicleSelection(), checks, [], []))]
     except InputError as error:
         raise too_many(error, len(chosen.lost), chosen.vehicles) from None
-    return Selection()
+    return VehicleSelection()
 
 
 @dataclass(frozen=True)
 class _Survey:
-    """What vehicles a file has, in the order of their numbers.
+    """The vehicles of a file, in the order of their numbers.
 
     ``index`` gives the place of each name; ``counts`` how many rows each has. ``unread``: a note on columns.
     """
@@ -179,9 +181,9 @@ class _Survey:
 
 def _survey(path: Path, strict: bool) -> _Survey:
     counts: dict[str, int] = {}
-    unread: tuple[str, ...] = ()
+    not_read: tuple[str, ...] = ()
     for table in column_pieces(path):
-        unread = unread_of(table, strict)
+        not_read = ignored_column_notes(table, strict)
         names, index = _named(table)
         for name, count in zip(names, np.bincount(index).tolist(), strict=True):
             counts[name] = counts.get(name, 0) + count
@@ -191,10 +193,10 @@ def _survey(path: Path, strict: bool) -> _Survey:
     known = [str(name) for name in unordered[order]]
     each = np.array([counts[name] for name in known])
     index_of = {name: k for k, name in enumerate(known)}
-    return _Survey(known, index_of, numbers[order], each, notes, unread)
+    return _Survey(known, index_of, numbers[order], each, notes, not_read)
 
 
-def _named(table: Table) -> tuple[list[str], Integers]:
+def _named(table: ColumnTable) -> tuple[list[str], Integers]:
     """The names of the vehicles in some rows, in order, and the place of each row's among them."""
     each = [str(name) for name in table["vehicle"].tolist()]
     names = sorted({*each})
@@ -247,7 +249,7 @@ class _GroupReader:
     strict: bool
     faults: dict[str, CellError] = field(default_factory=dict)
     clock: Clock = field(init=False)
-    mended: Mended = field(init=False, default_factory=Mended)
+    mended: RowRepairs = field(init=False, default_factory=RowRepairs)
     counts: Integers = field(init=False)
 
     def begin(self) -> None:
@@ -255,10 +257,10 @@ class _GroupReader:
         times, steps = np.zeros(0), dict[float, int]()
         self.counts = np.zeros_like(self.survey.counts)
         for number in range(len(self.groups)):
-            found = self._ordered(number)
-            if found is None:
+            ordered = self._ordered(number)
+            if ordered is None:
                 continue
-            table, ids, mended = found
+            table, ids, mended = ordered
             self.mended += mended
             vehicles, counts = np.unique(table["vehicle"], return_counts=True)
             self.counts[vehicles] = counts
@@ -272,13 +274,13 @@ class _GroupReader:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """On what was left out, on names of vehicles, on rows and on the clock, as of small files."""
+        """Return notes on omitted vehicles, names of vehicles, rows and the clock, as for small files."""
         known = len(self.survey.names)
-        left_out = (left_out_note([x], known, Why.TOLD(y.told)) for x, y in self.faults.items())
+        left_out = (left_out_note([x], known, ReasonKind.TOLD(y.told)) for x, y in self.faults.items())
         done = self.mended.notes(self.path)
         return (*self.survey.unread, *left_out, *self.survey.notes, *done, *self.clock.notes)
 
-    def table(self, number: int) -> tuple[Table, Integers]:
+    def table(self, number: int) -> tuple[ColumnTable, Integers]:
         """The rows of a group by vehicle, and the number of each row's vehicle.
 
         The column ``vehicle`` has its place in the survey.
@@ -287,28 +289,28 @@ class _GroupReader:
         frame = pl.read_parquet(sorted(self.groups[number].iterdir()), glob=False)
         columns = {name: frame[name].to_numpy() for name in frame.columns}
         places = columns.pop(_PLACE)
-        table = Table(self.path, columns, frame.height, places)
+        table = ColumnTable(self.path, columns, frame.height, places)
         return by_vehicle(table, self.survey.numbers[columns["vehicle"]])
 
     def recordings(self) -> Iterator[Recording]:
-        """Those of all groups. Raises ``InputError``."""
+        """Yield the recordings of all groups. Raises ``InputError``."""
         for number in range(len(self.groups)):
-            found = self._recording(number)
-            if found is not None:
-                yield found
+            recording = self._recording(number)
+            if recording is not None:
+                yield recording
 
     def _recording(self, number: int) -> Recording | None:
         while True:
-            found = self._ordered(number)
-            if found is None:
+            ordered = self._ordered(number)
+            if ordered is None:
                 return None
-            table, ids, _ = found
+            table, ids, _ = ordered
             try:
                 return vehicles_of(table, ids, self.clock, self.road, self.path.stem)
             except CellError as error:
                 self._blame(table, error)
 
-    def _ordered(self, number: int) -> tuple[Table, Integers, Mended] | None:
+    def _ordered(self, number: int) -> tuple[ColumnTable, Integers, RowRepairs] | None:
         """The rows of a group by vehicle and time, without vehicles with faults; None where none is left."""
         whole, numbers = self.table(number)
         while True:
@@ -321,21 +323,21 @@ class _GroupReader:
             except CellError as error:
                 self._blame(table, error)
 
-    def _blame(self, table: Table, error: CellError) -> None:
+    def _blame(self, table: ColumnTable, error: CellError) -> None:
         """Leave out the vehicle of a cell that breaks a rule. Raises the first error where none may be."""
         if self.strict or len(self.faults) + 1 > MOST_LEFT_OUT * len(self.survey.names):
             raise next(iter(self.faults.values()), error) from None
         row = int(np.argmax(table.places == error.place))
         self.faults[self.survey.names[int(table["vehicle"][row])]] = error
 
-    def doubts(self, made: _Written) -> Iterator[str]:
-        """What the vehicles that are written contradict themselves in. Raises ``InputError``."""
+    def contradiction_notes(self, made: _WrittenParts) -> Iterator[str]:
+        """Return notes on contradictions among the written vehicles. Raises ``InputError``."""
         bad = [self.survey.index[x] for x in self.faults]
-        kept = ~np.isin(self.survey.numbers, made.chosen.lost)
-        kept[bad] = False
+        written = ~np.isin(self.survey.numbers, made.chosen.lost)
+        written[bad] = False
         counts = self.counts.copy()
         counts[bad] = 0
-        begins, ours = offsets(counts)[:-1][kept], offsets(counts[kept])
+        begins, ours = offsets(counts)[:-1][written], offsets(counts[written])
 
         def whole_row(row: int) -> int:
             vehicle = int(np.searchsorted(ours, row, "right")) - 1
@@ -348,32 +350,32 @@ class _GroupReader:
         def vehicle_at(row: int) -> str:
             return self.cell(whole_row(row), "vehicle")[0]
 
-        return contradictions(self.path, made.checks, place_of, vehicle_at, "lanelet of the road")
+        return contradiction_notes(self.path, made.checks, place_of, vehicle_at, "lanelet of the road")
 
     def cell(self, row: int, column: str) -> tuple[str, str]:
         """The cell in a row of the whole, in order of vehicles, in words; and the name of its vehicle."""
         for number in range(len(self.groups)):
-            found = self._ordered(number)
-            if found is None:
+            ordered = self._ordered(number)
+            if ordered is None:
                 continue
-            table = found[0]
+            table = ordered[0]
             if row < table.rows:
                 name = self.survey.names[int(table["vehicle"][row])]
                 value = name if column == "vehicle" else table[column][row]
                 assert table.places is not None
-                one = Table(self.path, {column: np.array([value])}, 1, table.places[row : row + 1])
+                one = ColumnTable(self.path, {column: np.array([value])}, 1, table.places[row : row + 1])
                 return one.cell(0, column), name
             row -= table.rows
         raise IndexError(row)
 
 
 def _without_samples(recording: Recording) -> Recording:
-    """What a recording says once, or of vehicles."""
+    """Return the recording without its samples."""
     nothing = {name: getattr(recording, name)[:0].copy() for name in (*OF_SAMPLES, "inside")}
-    return replace(recording, **nothing, own={})
+    return replace(recording, **nothing, custom_signals={})
 
 
-def _joined(parts: list[Recording]) -> Recording:
+def _concatenated(parts: list[Recording]) -> Recording:
     """Recordings without samples, whose vehicles follow each other, as one."""
     names = (*OF_VEHICLES, "label")
     joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
@@ -381,7 +383,7 @@ def _joined(parts: list[Recording]) -> Recording:
     return replace(parts[0], **joined, start=offsets(counts))  # type: ignore[arg-type]
 
 
-def _join(parts: list[Path], temporary: Path, table: Path) -> None:
+def _join_files(parts: list[Path], temporary: Path, table: Path) -> None:
     """One Parquet file of several, which is read again and compared."""
     pl = polars_module()
     pl.scan_parquet(parts, glob=False).sink_parquet(
@@ -390,8 +392,8 @@ def _join(parts: list[Path], temporary: Path, table: Path) -> None:
     begin = 0
     for part in parts:
         expected = pl.read_parquet(part, glob=False)
-        found = pl.scan_parquet(temporary, glob=False).slice(begin, expected.height).collect()
-        if not found.equals(expected):
+        stored = pl.scan_parquet(temporary, glob=False).slice(begin, expected.height).collect()
+        if not stored.equals(expected):
             raise RuntimeError(f"the samples of {table} do not come back")
         begin += expected.height
     os.replace(temporary, table)

@@ -70,13 +70,13 @@ def _project(line: Floats, points: Floats) -> LineCoordinates:
     first, last = near == 0, near == len(length) - 1
     share = np.where(first, np.where(straight < 0, straight, np.maximum(share, 0)), share)
     share = np.where(last, np.where(straight > 1, straight, np.minimum(share, 1)), share)
-    held = np.clip(share, np.where(first, -np.inf, 0), np.where(last, np.inf, 1))
-    beyond = np.abs(share - held) * length[near]
-    away = offset - held[:, :, None] * step[near]
+    clipped = np.clip(share, np.where(first, -np.inf, 0), np.where(last, np.inf, 1))
+    beyond = np.abs(share - clipped) * length[near]
+    away = offset - clipped[:, :, None] * step[near]
     # A vertex may be nearer than the place beside it that the point is square to.
     best = np.argmin(np.hypot(away[:, :, 0], away[:, :, 1]) + beyond, axis=1)
     rows = np.arange(len(points))
-    nearest, on, off = near[rows, best], held[rows, best], away[rows, best]
+    nearest, on, off = near[rows, best], clipped[rows, best], away[rows, best]
     ahead = direction[nearest] + np.clip(on, 0, 1)[:, None] * turn[nearest]
     ahead /= np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
     d = ahead[:, 0] * off[:, 1] - ahead[:, 1] * off[:, 0]
@@ -97,7 +97,9 @@ def _project(line: Floats, points: Floats) -> LineCoordinates:
 
 
 def _near(line: Floats, points: Floats) -> Integers:
-    """For each point the segments (n, k) around the vertex that is nearest, or all where they are few."""
+    """Return for each point the segments (n, k) around the nearest vertex, or all segments where they are
+    few.
+    """
     segments = len(line) - 1
     if segments <= 2 * AROUND:
         return np.broadcast_to(np.arange(segments), (len(points), segments))
@@ -110,7 +112,7 @@ def _near(line: Floats, points: Floats) -> Integers:
 
 
 def _square_to(offset: Floats, step: Floats, direction: Floats, turn: Floats) -> Floats:
-    """Where on each segment, from 0 to 1, the line's direction is square to the way to each point.
+    """Return where on each segment, from 0 to 1, the line's direction is square to the way to each point.
 
     That is (offset - x·step)·(direction + x·turn) = 0, of whose two solutions the one is taken that is there
     for straight segments too.

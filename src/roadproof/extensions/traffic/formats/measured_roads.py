@@ -16,7 +16,7 @@ import numpy.typing as npt
 from roadproof.extensions.maps.lines import even_line, joined
 from roadproof.extensions.maps.network import Network
 from roadproof.extensions.traffic.formats.clock import Rate
-from roadproof.extensions.traffic.formats.lanelets import used_lanes
+from roadproof.extensions.traffic.formats.lanelets import with_used_lanes
 from roadproof.extensions.traffic.formats.line_coordinates import (
     BLOCK,
     LineCoordinates,
@@ -56,12 +56,12 @@ def triangles_of(left: Floats, right: Floats) -> Floats:
 
 
 def overlap(boxes: Floats, triangles: Floats) -> Bools:
-    """For each box (n, 4, 2) whether it overlaps any triangle (m, 3, 2) with positive area; touching is none.
+    """Return for each box (n, 4, 2) whether it overlaps any triangle (m, 3, 2) with positive area.
 
     Two convex figures overlap with positive area unless some edge of either is along a line that
     separates their interiors.
     """
-    found = np.zeros(len(boxes), bool)
+    overlapping = np.zeros(len(boxes), bool)
     low, high = triangles.min(axis=1), triangles.max(axis=1)
     begin, end = boxes.min(axis=1), boxes.max(axis=1)
     near = np.flatnonzero(((low.min(axis=0) < end) & (high.max(axis=0) > begin)).all(axis=1))
@@ -69,12 +69,12 @@ def overlap(boxes: Floats, triangles: Floats) -> Bools:
         block = near[k : k + BLOCK]
         one, other = np.nonzero(_within(begin[block], end[block], low, high))
         meet = ~_separated(boxes[block[one]], triangles[other])
-        found[block[one[meet]]] = True
-    return found
+        overlapping[block[one[meet]]] = True
+    return overlapping
 
 
 def _separated(boxes: Floats, triangles: Floats) -> Bools:
-    """For each box (n, 4, 2) and triangle (n, 3, 2) whether an edge of either separates the two."""
+    """Return for each box (n, 4, 2) and triangle (n, 3, 2) whether an edge of either separates the two."""
     # Opposite edges of a box are parallel.
     edges = np.concatenate(
         (np.diff(boxes[:, :3], axis=1), np.roll(triangles, -1, axis=1) - triangles), axis=1
@@ -88,8 +88,8 @@ def _separated(boxes: Floats, triangles: Floats) -> Bools:
 
 
 def inside(points: Floats, triangles: Floats) -> Bools:
-    """For each point (n, 2) whether some triangle (m, 3, 2) holds it, its edges included."""
-    held = np.zeros(len(points), bool)
+    """Return for each point (n, 2) whether some triangle (m, 3, 2) contains it, edges included."""
+    contained = np.zeros(len(points), bool)
     low, high = triangles.min(axis=1), triangles.max(axis=1)
     edges = np.roll(triangles, -1, axis=1) - triangles
     for k in range(0, len(points), BLOCK):
@@ -98,12 +98,12 @@ def inside(points: Floats, triangles: Floats) -> Bools:
         offset = block[one, None, :] - triangles[other]
         turn = edges[other][..., 0] * offset[..., 1] - edges[other][..., 1] * offset[..., 0]
         each = np.logical_and.reduce(turn >= 0, axis=1) | np.logical_and.reduce(turn <= 0, axis=1)
-        held[k + one[each]] = True
-    return held
+        contained[k + one[each]] = True
+    return contained
 
 
 def _within(begin: Floats, end: Floats, low: Floats, high: Floats) -> Bools:
-    """Which of some boxes [begin, end] (n, 2) and [low, high] (m, 2) along the axes meet, (n, m)."""
+    """Return which of some boxes [begin, end] (n, 2) and [low, high] (m, 2) along the axes meet, (n, m)."""
     meet: Bools = (low[:, 0] <= end[:, :1]) & (high[:, 0] >= begin[:, :1])
     meet &= (low[:, 1] <= end[:, 1:]) & (high[:, 1] >= begin[:, 1:])
     return meet
@@ -150,7 +150,7 @@ def place_traffic(traffic: MeasuredTraffic, network: Network) -> Recording:
     counts = np.diff(traffic.start)
     length, width = (np.repeat(x, counts) for x in (traffic.length, traffic.width))
     boxes = boxes_of(traffic.centre, traffic.heading, length, width)
-    network, unused = used_lanes(
+    network, unused = with_used_lanes(
         network, lambda x: bool(overlap(boxes, triangles_of(x.left, x.right)).any()), traffic.name
     )
     inside_of, occupancy, lane, zones = _occupy(network, boxes, traffic.centre)
@@ -186,7 +186,7 @@ def place_traffic(traffic: MeasuredTraffic, network: Network) -> Recording:
 
 
 def _lanelets(network: Network) -> Iterator[Lanelet]:
-    """In the order of their lanes; bounds that only tell them apart stand for theirs."""
+    """Yield the lanelets in the order of their lanes; their bounds only tell them apart."""
     ordered = ((lane.name, name) for lane in network.lanes for name in lane.lanelets)
     for k, (lane, name) in enumerate(ordered):
         band = (Fraction(k), Fraction(k + 1))
@@ -194,13 +194,15 @@ def _lanelets(network: Network) -> Iterator[Lanelet]:
 
 
 def _along_main_ways(network: Network, points: Floats, direction: Integers) -> LineCoordinates:
-    """Each point along the main way of its carriageway."""
+    """Return the coordinates of each point along the main way of its carriageway."""
     made = LineCoordinates(*(np.zeros(len(points)) for _ in fields(LineCoordinates)))
     for way, chain in enumerate(network.main, start=1):
         ours = np.flatnonzero(direction == way)
         if len(ours):
-            found = project(even_line(joined([network.lanelets[x].centre for x in chain])), points[ours])
-            for name, values in vars(found).items():
+            coordinates = project(
+                even_line(joined([network.lanelets[x].centre for x in chain])), points[ours]
+            )
+            for name, values in vars(coordinates).items():
                 getattr(made, name)[ours] = values
     return made
 
@@ -214,7 +216,7 @@ def _slack(
     length: Floats,
     width: Floats,
 ) -> Slack:
-    """What the corners of the boxes, projected themselves, say against aligned boxes."""
+    """Return how far the projected corners of the boxes are from aligned boxes."""
     far, left = corners.s.reshape(-1, 4), corners.d.reshape(-1, 4)
     ends = np.maximum(np.abs(far.max(axis=1) - s), np.abs(far.min(axis=1) - (s - length)))
     sides = np.maximum(np.abs(left.max(axis=1) - d), np.abs(left.min(axis=1) - (d - width)))
@@ -225,7 +227,7 @@ def _slack(
 
 
 def _say_off(along: LineCoordinates, slack: Slack, start: Integers, ids: Integers) -> Iterator[str]:
-    """How far lengths and places along the reference line are from those in the plane."""
+    """Return how far lengths and places along the reference line are from those in the plane."""
     each = np.add.reduceat(along.stretch, start[:-1]) / np.diff(start)
     worst = int(np.argmax(np.abs(each)))
     yield (
@@ -245,7 +247,7 @@ def _say_off(along: LineCoordinates, slack: Slack, start: Integers, ids: Integer
 
 
 def _occupy(network: Network, boxes: Floats, centre: Floats) -> tuple[Bools, Masks, Integers, Masks]:
-    """For each sample the lanelets and lanes it is in, the lane of its centre, and its zones."""
+    """Return for each sample its lanelets and lanes, the lane of its centre, and its zones."""
     occupancy, zones = np.zeros(len(boxes), np.uint32), np.zeros(len(boxes), np.uint32)
     lane = np.full(len(boxes), -1, np.int64)
     inside_of = np.zeros((len(boxes), sum(len(x.lanelets) for x in network.lanes)), np.bool_)
@@ -264,7 +266,7 @@ def _occupy(network: Network, boxes: Floats, centre: Floats) -> tuple[Bools, Mas
 
 
 def _carriageway(network: Network, occupancy: Masks, start: Integers) -> Integers:
-    """Where each vehicle is most often; the first carriageway for one that is nowhere."""
+    """Return where each vehicle is most often; the first carriageway for one that is nowhere."""
     ways = range(1, len(network.main) + 1)
     masks = [sum(1 << k for k, x in enumerate(network.lanes) if x.carriageway == way) for way in ways]
     often = [np.add.reduceat((occupancy & np.uint32(m) != 0).astype(np.int64), start[:-1]) for m in masks]

@@ -1,4 +1,4 @@
-"""What is added up over a recording that may be larger than memory: a median, and speeds against ways."""
+"""Sums over a recording that may be larger than memory: a median, and speeds against distances."""
 
 import tempfile
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ class Median:
         return self.file
 
     def value(self) -> float:
-        """As ``np.median`` of them all; there must be one."""
+        """Return the median of all numbers, of which there must be one."""
         if self.file is None:
             return float(np.median(np.concatenate(self.held)))
         numbers = np.memmap(self._put_away(), np.float64)
@@ -71,7 +71,7 @@ def integrate(rate: Floats, frames_a_second: Rate, last: tuple[float, float] | N
 
 
 @dataclass
-class Scale:
+class SpeedScale:
     """The ways of all vehicles (m) from their first to their last frame, and the integral of their speeds.
 
     ``vehicles`` are those that count, ``row`` is the first sample of the first of them.
@@ -96,7 +96,7 @@ class Scale:
         self.integral += float(integral[counts].sum())
         self.vehicles += int(np.count_nonzero(counts))
 
-    def told(self) -> str | None:
+    def text(self) -> str | None:
         """The difference in words; None where it is small, or too little is known."""
         if abs(self.way) < LEAST_WAY:
             return None

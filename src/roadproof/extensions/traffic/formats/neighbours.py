@@ -1,22 +1,13 @@
-"""Who drives around whom: the neighbour columns of the highD format, for all samples at once.
+"""The neighbours of each vehicle, as in the neighbour columns of highD, for all samples at once.
 
 A vehicle's lane is the one that holds the centre of its box. Left and right are in driving direction.
 Vehicles in one place are noise in measured traffic, and a fault in simulated traffic.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 
-from roadproof.extensions.traffic.formats.pairs import (
-    DistanceBounds,
-    Pairs,
-    common_pairs,
-    ever_within,
-    row_of,
-)
 from roadproof.extensions.traffic.formats.recording import Bools, Floats, Integers, Recording
 
 NONE = -1
@@ -33,7 +24,7 @@ class Neighbours:
 
 def find_neighbours(recording: Recording) -> Neighbours:
     """Neighbours of every sample of a recording on straight bands."""
-    places = _Places(recording)
+    places = _LaneOrder(recording)
     beside: dict[str, Integers] = {}
     for side, shift in (("left", 1), ("right", -1)):
         preceding, alongside, following = places.beside(shift)
@@ -45,7 +36,7 @@ def find_neighbours(recording: Recording) -> Neighbours:
     return Neighbours(places.shifted(1), places.shifted(-1), beside)
 
 
-class _Places:
+class _LaneOrder:
     """Samples in order of frame, direction, lane from the right, and front."""
 
     def __init__(self, recording: Recording) -> None:
@@ -104,7 +95,7 @@ class _Places:
 
 
 def _rank(recording: Recording, lane: int) -> int:
-    """How many lanes of the same direction lie to the right."""
+    """Return how many lanes of the same direction lie to the right."""
     ours = recording.lanes[lane]
 
     def right_edge(k: int) -> float:
@@ -131,47 +122,3 @@ def gaps_ahead(recording: Recording, preceding: Integers) -> tuple[Floats, Float
     thw = np.divide(dhw, recording.v_lon, out=np.zeros_like(dhw), where=moving)
     ttc = np.divide(dhw, closing, out=np.zeros_like(dhw), where=approaching)
     return dhw, thw, ttc, speed
-
-
-Overlap: TypeAlias = tuple[int, int, int, float]
-"""Both ids, in how many frames, how deep at most (m)."""
-
-
-def find_overlaps(recording: Recording, among: Pairs | None = None) -> Iterator[Overlap]:
-    """Pairs whose boxes overlap with positive area: both ids, in how many frames, how deep at most (m).
-
-    All pairs are looked at, or those ``among``.
-
-    Depth is the smaller of the overlaps along and across, as large as it ever gets.
-    """
-    pairs = common_pairs(recording, np.ones(recording.vehicles, bool)) if among is None else among
-    first, second = pairs.first, pairs.second
-    touching = [
-        DistanceBounds(position, size[first], size[second])
-        for position, size in ((recording.s, recording.length), (recording.d, recording.width))
-    ]
-    pairs = pairs.choose(ever_within(recording, pairs, touching))
-    for first, second, low, high in zip(pairs.first, pairs.second, pairs.low, pairs.high, strict=True):
-        one, other = (
-            slice(int(row_of(recording, v, low)), int(row_of(recording, v, high)) + 1)
-            for v in (first, second)
-        )
-        depth = np.full(int(high - low + 1), np.inf)
-        for position, size in ((recording.s, recording.length), (recording.d, recording.width)):
-            front = np.minimum(position[one], position[other])
-            rear = np.maximum(position[one] - size[first], position[other] - size[second])
-            depth = np.minimum(depth, np.round(front - rear, 6))
-        if (depth > 0).any():
-            ids = recording.vehicle_id
-            yield int(ids[first]), int(ids[second]), int(np.count_nonzero(depth > 0)), float(depth.max())
-
-
-def told_overlap(overlap: Overlap) -> str:
-    """An overlap as a line."""
-    one, other, frames, depth = overlap
-    return f"vehicles {one} and {other} overlap in {frames} frames, by up to {depth:.2f} m"
-
-
-def describe_overlaps(recording: Recording) -> Iterator[str]:
-    """One line for each pair that overlaps."""
-    return map(told_overlap, find_overlaps(recording))

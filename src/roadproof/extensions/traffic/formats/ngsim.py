@@ -19,7 +19,8 @@ from pathlib import Path
 
 import numpy as np
 
-from roadproof.extensions.traffic.formats.contradictions import contradictions, seldom
+from roadproof.extensions.traffic.formats.content import columns_not_read_note
+from roadproof.extensions.traffic.formats.contradictions import contradiction_notes, note_if_rare
 from roadproof.extensions.traffic.formats.harmless_columns import NGSIM
 from roadproof.extensions.traffic.formats.ngsim_lanes import FOOT, FREEWAYS, measured_road
 from roadproof.extensions.traffic.formats.plausible import (
@@ -29,14 +30,13 @@ from roadproof.extensions.traffic.formats.plausible import (
     ContradictionChecks,
 )
 from roadproof.extensions.traffic.formats.recording import Bools, Floats, Integers, Recording, with_notes
-from roadproof.extensions.traffic.formats.reliable import rate_of_change, reliable
+from roadproof.extensions.traffic.formats.reliable import rate_of_change, reliable_part
 from roadproof.extensions.traffic.formats.source import Files, Format, find_files, first_line
-from roadproof.extensions.traffic.formats.straight import StraightRoad, of_road, record
-from roadproof.extensions.traffic.formats.table import Kind, Table, kinds_of, read_table
+from roadproof.extensions.traffic.formats.straight import StraightRoad, of_road, place_recording
+from roadproof.extensions.traffic.formats.table import ColumnTable, Kind, kinds_of, read_table
 from roadproof.extensions.traffic.formats.tracks import Rule, without_bad
 from roadproof.world.models import load_recorded_road
 from roadproof.world.signals import RECORDED, SIZES, SignalName, SizeName
-from roadproof.world.unread import unread_columns
 
 RATE = 10
 STEP = 100
@@ -46,7 +46,7 @@ PERIOD = 100_000
 ROAD_ENDING = "_road.toml"
 KINDS = {1: "Motorcycle", 2: "Car", 3: "Truck"}
 """Names of v_Class."""
-_WANTED = kinds_of(
+_READ = kinds_of(
     integer="Vehicle_ID Frame_ID Global_Time v_Class Lane_ID",
     number="Local_X Local_Y v_Length v_Width v_Vel v_Acc",
 )
@@ -73,7 +73,7 @@ _FARTHEST = 50_000.0
 """ft from the place in ``Freeway.near``."""
 _RARE = 0.05
 """A share of rows with another time of frame 0 that makes no period: their times are wrong."""
-_TOLD = (
+_DERIVED_NOTE = (
     "v_lat and a_lat are differences of Local_X; NGSIM smooths v_Vel and v_Acc, but not Local_X and Local_Y"
 )
 
@@ -83,54 +83,58 @@ def read_ngsim(path: Path, strict: bool = True) -> Recording:
 
     Raises ``InputError`` that names file, row, column, value and rule.
     """
-    unread = unread_columns(path, *_names(path), strict)
+    not_read = columns_not_read_note(path, *_names(path), strict)
     rows, streets = _freeways(_read(path))
     rows, late, periods = _in_order(rows)
     if not strict:
         rows, late, periods = _without_copies(rows, late, periods)
-    kept, left_out = without_bad(rows["track"], _rules(rows, late), rows.refuse, strict)
-    rows = rows.at(np.flatnonzero(kept))
+    usable_rows, left_out = without_bad(rows["track"], _rules(rows, late), rows.refuse, strict)
+    rows = rows.at(np.flatnonzero(usable_rows))
     road, way = _road_of(path, rows)
-    recording = with_notes(_recording(rows, road, path.stem), (*streets, *periods, *left_out, *unread, _TOLD))
-    whole = reliable(recording, strict, partial(_check_plausible, rows))
+    recording = with_notes(
+        _recording(rows, road, path.stem), (*streets, *periods, *left_out, *not_read, _DERIVED_NOTE)
+    )
+    whole = reliable_part(recording, strict, partial(_check_plausible, rows))
     return with_notes(whole, () if way else _check_lanes(rows, recording))
 
 
 def _names(path: Path) -> tuple[list[str], list[str], dict[str, str]]:
     """The columns of a file, those that are read, and the harmless ones, in lower case."""
     names = [x.lower() for x in first_line(path).split(",")]
-    return names, [x.lower() for x in (*_WANTED, _LOCATION)], {x.lower(): y for x, y in NGSIM.items()}
+    return names, [x.lower() for x in (*_READ, _LOCATION)], {x.lower(): y for x, y in NGSIM.items()}
 
 
-def _read(path: Path) -> Table:
+def _read(path: Path) -> ColumnTable:
     """The columns, called as above. Raises ``InputError``."""
     header = tuple(first_line(path).split(","))
     known = {name.lower(): name for name in header}
-    wanted: dict[str, Kind] = {**_WANTED, **({_LOCATION: "text"} if "location" in known else _PLACES)}
-    names = {name: known.get(name.lower(), name) for name in wanted}
+    columns: dict[str, Kind] = {**_READ, **({_LOCATION: "text"} if "location" in known else _PLACES)}
+    names = {name: known.get(name.lower(), name) for name in columns}
     if not set(names.values()) <= set(header):
-        header = tuple(wanted)  # so that reading says which columns are missing
-    table = read_table(path, header, {names[name]: kind for name, kind in wanted.items()}, thousands=True)
-    return replace(table, columns={name: table[names[name]] for name in wanted})
+        header = tuple(columns)  # so that reading says which columns are missing
+    table = read_table(path, header, {names[name]: kind for name, kind in columns.items()}, thousands=True)
+    return replace(table, columns={name: table[names[name]] for name in columns})
 
 
-def _freeways(table: Table) -> tuple[Table, list[str]]:
+def _freeways(table: ColumnTable) -> tuple[ColumnTable, list[str]]:
     """The rows on freeways, with a column Location, and a note on others. Raises ``InputError``."""
     if _LOCATION not in table.columns:
         return replace(table, columns={**table.columns, _LOCATION: _located(table)}), []
     names = np.char.lower(np.char.strip(table[_LOCATION].astype(np.str_)))
     table = replace(table, columns={**table.columns, _LOCATION: names})
-    kept = np.isin(names, [*FREEWAYS])
-    streets = sorted(set(names[~kept].tolist()))
-    if not kept.any():
+    on_freeway = np.isin(names, [*FREEWAYS])
+    streets = sorted(set(names[~on_freeway].tolist()))
+    if not on_freeway.any():
         raise table.refuse(0, _LOCATION, f"only freeways are read: {', '.join(FREEWAYS)}")
     if not streets:
         return table, []
-    left = f"left out {int(np.count_nonzero(~kept))} of {table.rows} rows: {', '.join(streets)}"
-    return table.at(np.flatnonzero(kept)), [f"{left} are streets with crossings, and only freeways are read"]
+    left = f"left out {int(np.count_nonzero(~on_freeway))} of {table.rows} rows: {', '.join(streets)}"
+    return table.at(np.flatnonzero(on_freeway)), [
+        f"{left} are streets with crossings, and only freeways are read"
+    ]
 
 
-def _located(table: Table) -> np.ndarray[tuple[int], np.dtype[np.str_]]:
+def _located(table: ColumnTable) -> np.ndarray[tuple[int], np.dtype[np.str_]]:
     """The freeway on which all samples are, by their Global_X and Global_Y. Raises ``InputError``."""
     x, y = (float(np.median(table[name])) for name in _PLACES)
     for name, freeway in FREEWAYS.items():
@@ -140,7 +144,7 @@ def _located(table: Table) -> np.ndarray[tuple[int], np.dtype[np.str_]]:
     raise table.refuse(0, "Global_X", rule)
 
 
-def _in_order(table: Table) -> tuple[Table, Bools, list[str]]:
+def _in_order(table: ColumnTable) -> tuple[ColumnTable, Bools, list[str]]:
     """The rows by vehicle and frame, with columns ``track``, ``frame`` and ``way`` (which freeway).
 
     Also which rows have a wrong time, and notes on periods of time. Raises ``InputError``.
@@ -167,19 +171,19 @@ def _in_order(table: Table) -> tuple[Table, Bools, list[str]]:
     return replace(table, columns=columns).at(order), wrong[order], notes
 
 
-def _without_copies(rows: Table, late: Bools, notes: list[str]) -> tuple[Table, Bools, list[str]]:
-    """The same without rows that say again what the one before says, with a note on these."""
-    names = ("track", "frame", *_WANTED)
+def _without_copies(rows: ColumnTable, late: Bools, notes: list[str]) -> tuple[ColumnTable, Bools, list[str]]:
+    """Return the rows without copies of the row before, with a note on the copies."""
+    names = ("track", "frame", *_READ)
     again = np.logical_and.reduce([np.diff(rows[name], prepend=np.inf) == 0 for name in names])
     count = int(np.count_nonzero(again))
     if not count:
         return rows, late, notes
-    told = f"{count} of {rows.rows} rows occur twice; they were read once"
-    return rows.at(np.flatnonzero(~again)), late[~again], [*notes, told]
+    note = f"{count} of {rows.rows} rows occur twice; they were read once"
+    return rows.at(np.flatnonzero(~again)), late[~again], [*notes, note]
 
 
-def _periods(table: Table, way: Integers) -> tuple[Integers, Bools]:
-    """For each row the number of its period, and whether its time is wrong. Raises ``InputError``.
+def _periods(table: ColumnTable, way: Integers) -> tuple[Integers, Bools]:
+    """Return for each row the number of its period, and whether its time is wrong. Raises ``InputError``.
 
     A period is of one freeway, and all of its rows have frame 0 at one time. Rows with a time that few have
     are put into the largest one.
@@ -195,8 +199,8 @@ def _periods(table: Table, way: Integers) -> tuple[Integers, Bools]:
     return np.unique(known[group], return_inverse=True)[1], (known != np.arange(len(share)))[group]
 
 
-def _rules(rows: Table, late: Bools) -> list[Rule]:
-    """For each column which rows are fine, and what they break if not; ``late``: whose time is wrong."""
+def _rules(rows: ColumnTable, late: Bools) -> list[Rule]:
+    """Return a rule for each column: which rows keep it, and its text. ``late``: rows whose time is wrong."""
     same = np.diff(rows["track"], prepend=-1) == 0
     step = np.diff(rows["frame"], prepend=0)
     aside = np.abs(np.diff(rows["Local_X"], prepend=0))
@@ -216,7 +220,7 @@ def _rules(rows: Table, late: Bools) -> list[Rule]:
     return [*rules, (~same | (aside <= _ASIDE), "Local_X", jump)]
 
 
-def _road_of(path: Path, rows: Table) -> tuple[StraightRoad, bool]:
+def _road_of(path: Path, rows: ColumnTable) -> tuple[StraightRoad, bool]:
     """The road beside the file, or the measured lanes of each freeway; and whether it is the former."""
     beside = path.with_name(f"{path.stem}{ROAD_ENDING}")
     ways = np.unique(rows["way"]).tolist()
@@ -249,13 +253,13 @@ def _joined(roads: Sequence[StraightRoad]) -> StraightRoad:
     )
 
 
-def _recording(rows: Table, road: StraightRoad, name: str) -> Recording:
+def _recording(rows: ColumnTable, road: StraightRoad, name: str) -> Recording:
     """The recording of rows by vehicle and frame, in metres."""
     first = np.flatnonzero(np.diff(rows["track"], prepend=-1) != 0)
     start = np.append(first, rows.rows)
     s, width = rows["Local_Y"] * FOOT, rows["v_Width"] * FOOT
     d = width / 2 - rows["Local_X"] * FOOT
-    v_lat = _changes(d, start)
+    v_lat = _rates_of_change(d, start)
     vehicles = {
         "vehicle_id": rows["track"][first],
         "direction": rows["way"][first],
@@ -264,16 +268,16 @@ def _recording(rows: Table, road: StraightRoad, name: str) -> Recording:
         "width": width[first],
         "first_frame": rows["frame"][first],
     }
-    signals = (s, d, rows["v_Vel"] * FOOT, v_lat, rows["v_Acc"] * FOOT, _changes(v_lat, start))
-    return record(road, name, RATE, vehicles, np.diff(start), signals)
+    signals = (s, d, rows["v_Vel"] * FOOT, v_lat, rows["v_Acc"] * FOOT, _rates_of_change(v_lat, start))
+    return place_recording(road, name, RATE, vehicles, np.diff(start), signals)
 
 
-def _changes(values: Floats, start: Integers) -> Floats:
-    """What values of each vehicle change by in a second."""
+def _rates_of_change(values: Floats, start: Integers) -> Floats:
+    """Return the change per second of the values of each vehicle."""
     return np.concatenate([rate_of_change(values[a:b], RATE) for a, b in pairwise(start.tolist())])
 
 
-def _check_plausible(whole: Table, checks: ContradictionChecks, rows: Integers) -> Iterator[str]:
+def _check_plausible(whole: ColumnTable, checks: ContradictionChecks, rows: Integers) -> Iterator[str]:
     """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
     table = whole if len(rows) == whole.rows else whole.at(rows)
 
@@ -281,20 +285,22 @@ def _check_plausible(whole: Table, checks: ContradictionChecks, rows: Integers) 
         return f"{table.cell(row, _SIGNALS[signal])} of vehicle {table['track'][row]}"
 
     vehicle_at = partial(table.cell, column="Vehicle_ID")
-    return contradictions(table.path, checks, at, vehicle_at, "lane")
+    return contradiction_notes(table.path, checks, at, vehicle_at, "lane")
 
 
-def _check_lanes(rows: Table, recording: Recording) -> Iterator[str]:
+def _check_lanes(rows: ColumnTable, recording: Recording) -> Iterator[str]:
     """Lane_ID must be the lane of the middle of most boxes, where it is one that goes through."""
     names = np.array([x.name.rpartition(".")[2] for x in recording.lanes] + [""])
     numbers = np.array([int(x) if x.isdecimal() else 0 for x in names.tolist()])[recording.lane]
     other = (numbers > 0) & (numbers != rows["Lane_ID"])
     rule = "Lane_ID is not the lane of the box's centre"
-    return seldom(rows, other, "Lane_ID", rule, "lanes are not straight: write them into NAME_road.toml")
+    return note_if_rare(
+        rows, other, "Lane_ID", rule, "lanes are not straight: write them into NAME_road.toml"
+    )
 
 
 def is_ngsim(path: Path) -> bool:
-    """Whether a CSV file has NGSIM's columns."""
+    """Return whether a CSV file has NGSIM's columns."""
     return {"vehicle_id", "frame_id", "local_x"} <= set(first_line(path).lower().split(","))
 
 

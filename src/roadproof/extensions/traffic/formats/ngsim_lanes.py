@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.extensions.traffic.formats.table import Table
+from roadproof.extensions.traffic.formats.table import ColumnTable
 from roadproof.world.lanelet_rules import shared_boundaries
 from roadproof.world.road import Attribute, Lanelet, Road, Zone
 
@@ -58,7 +58,7 @@ _Step = tuple[Fraction | None, Fraction | None, Attribute]
 """A stretch along s (m), and the kind of ramp beside the lanes there; main where there is none."""
 
 
-def measured_road(name: str, freeway: Freeway, rows: Table) -> Road:
+def measured_road(name: str, freeway: Freeway, rows: ColumnTable) -> Road:
     """The road of a freeway by the samples on it, which are in order of vehicle and frame.
 
     Raises ``InputError`` where Lane_ID does not grow to the right.
@@ -83,7 +83,7 @@ def measured_road(name: str, freeway: Freeway, rows: Table) -> Road:
 
 
 def _band(left: float, right: float) -> tuple[Fraction, Fraction]:
-    """d of the edges (m), the right one first, from their Local_X (ft)."""
+    """Return d of the edges (m), the right one first, from their Local_X (ft)."""
     return _metres(-right), _metres(-left)
 
 
@@ -99,7 +99,7 @@ def _lanelets(
         yield Lanelet(name, lane, _ZONES[ramp], attribute, (begin, end), d)
 
 
-def _middles(rows: Table, numbers: Sequence[int]) -> dict[int, float]:
+def _middles(rows: ColumnTable, numbers: Sequence[int]) -> dict[int, float]:
     """The median Local_X (ft) of each lane; of one without vehicles, between those of its neighbours."""
     lane, x = rows["Lane_ID"], rows["Local_X"]
     known = {k: float(np.median(x[lane == k])) for k in numbers if (lane == k).any()}
@@ -114,7 +114,7 @@ def _middles(rows: Table, numbers: Sequence[int]) -> dict[int, float]:
     return {k: float(np.interp(k, [*known], [*known.values()])) for k in there}
 
 
-def _steps(freeway: Freeway, rows: Table) -> Iterator[_Step]:
+def _steps(freeway: Freeway, rows: ColumnTable) -> Iterator[_Step]:
     """The road along s before, beside and after the ramps that ``rows`` are on."""
     lane, s = rows["Lane_ID"], rows["Local_Y"]
     begin, end = float(s.min()), float(s.max())

@@ -11,8 +11,8 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.extensions.traffic.formats.plausible import SHARE
 from roadproof.extensions.traffic.formats.recording import Bools, Floats, Recording, keep_vehicles, with_notes
-from roadproof.extensions.traffic.formats.reliable import MOST_LEFT_OUT, left_out_note, named
-from roadproof.reasons import Why
+from roadproof.extensions.traffic.formats.reliable import MOST_LEFT_OUT, first_names, left_out_note
+from roadproof.reasons import ReasonKind
 
 MOST_STRETCHED = 0.05
 """Above this share by which steps along the line are too long or short in the mean, a vehicle is left out."""
@@ -21,7 +21,7 @@ LEAST_WAY = 2.0
 
 
 def follows_line(centre: Floats, recording: Recording) -> Bools:
-    """For each vehicle whether its steps along the line are as long as in the plane, and it heads along it.
+    """Return for each vehicle whether it heads along the line, with steps as long along it as in the plane.
 
     ``centre``: centres of the boxes in the plane (n, 2), a row for each of ``recording``. Each step counts:
     one that is too long does not make up for one that is too short.
@@ -49,15 +49,15 @@ def leave_out_strays(recording: Recording, fits: Bools, strict: bool) -> Recordi
     if not ids:
         return recording
     if strict or len(ids) > MOST_LEFT_OUT * recording.vehicles:
-        off = _off(ids, recording.vehicles)
+        off = _off_text(ids, recording.vehicles)
         raise InputError(f"{recording.name}: {off}; evaluate a part of one road without crossings")
-    note = left_out_note(ids, recording.vehicles, Why.OFF_LINE())
+    note = left_out_note(ids, recording.vehicles, ReasonKind.OFF_LINE())
     return with_notes(keep_vehicles(recording, fits), [note])
 
 
-def _off(ids: Sequence[int], of: int) -> str:
+def _off_text(ids: Sequence[int], of: int) -> str:
     return (
         f"the reference line of the road does not follow the way of {len(ids)} of {of} vehicles "
-        f"({named(ids)}): lengths differ by more than {100 * MOST_STRETCHED:g} %, or they head more than "
-        "45 degrees away from it"
+        f"({first_names(ids)}): lengths differ by more than {100 * MOST_STRETCHED:g} %, or they head more "
+        "than 45 degrees away from it"
     )

@@ -1,4 +1,4 @@
-"""Which vehicles to look at together: pairs and triples of one driving direction.
+"""The pairs and triples of vehicles to evaluate: those of one driving direction.
 
 The pre-filter keeps every pair that may violate the RSS distance; what it drops provably does not.
 """
@@ -11,7 +11,7 @@ import numpy as np
 
 from roadproof.extensions.traffic.formats.clock import samples_in
 from roadproof.extensions.traffic.formats.recording import Bools, Floats, Integers, Masks, Recording, offsets
-from roadproof.library.scenarios import PAIR, TRIPLE
+from roadproof.library.scenario_names import PAIR, TRIPLE
 
 
 class _Columns:
@@ -20,13 +20,13 @@ class _Columns:
     def __len__(self) -> int:
         return len(next(iter(vars(self).values())))
 
-    def choose(self, wanted: Bools | Integers | slice) -> Self:
-        """The rows at ``wanted``: a mask, indices or a slice."""
-        if isinstance(wanted, np.ndarray) and wanted.dtype == np.bool_:
-            wanted = np.flatnonzero(wanted)  # several times as fast as the mask
-        if isinstance(wanted, slice):
-            return type(self)(*(column[wanted] for column in vars(self).values()))
-        return type(self)(*(column.take(wanted) for column in vars(self).values()))
+    def choose(self, selected: Bools | Integers | slice) -> Self:
+        """The rows at ``selected``: a mask, indices or a slice."""
+        if isinstance(selected, np.ndarray) and selected.dtype == np.bool_:
+            selected = np.flatnonzero(selected)  # several times as fast as the mask
+        if isinstance(selected, slice):
+            return type(self)(*(column[selected] for column in vars(self).values()))
+        return type(self)(*(column.take(selected) for column in vars(self).values()))
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Pairs(_Columns):
 
     @property
     def samples(self) -> Integers:
-        """How many common frames each pair has."""
+        """Return how many common frames each pair has."""
         return self.high - self.low + 1
 
     @property
@@ -50,8 +50,8 @@ class Pairs(_Columns):
 
 
 @dataclass(frozen=True)
-class Reach:
-    """What RSS distances depend on besides speeds (SI units; paper eqs. lon_RSS and lat_RSS)."""
+class RssParameters:
+    """The parameters of RSS distances (SI units; paper eqs. lon_RSS and lat_RSS)."""
 
     rho: float
     a_max: float
@@ -63,7 +63,7 @@ class Reach:
 
 @dataclass(frozen=True)
 class DetectionRange:
-    """How far the detectors of earlier works look: time to collision and headway (s), distance (m)."""
+    """The range of the detectors of earlier works: time to collision and headway (s), distance (m)."""
 
     ttc: float
     thw: float
@@ -88,7 +88,7 @@ def common_pairs(recording: Recording, eligible: Bools) -> Pairs:
 
 
 def _meeting(recording: Recording, vehicles: Integers) -> tuple[Integers, Integers]:
-    """In order of entry, each vehicle meets those that enter before it leaves."""
+    """Return the pairs of vehicles on the road at one time, in order of entry."""
     vehicles = vehicles[np.argsort(recording.first_frame[vehicles], kind="stable")]
     entry = recording.first_frame[vehicles]
     place = np.arange(len(vehicles))
@@ -116,7 +116,7 @@ def all_moments(recording: Recording, pairs: Pairs, samples: int = 300_000) -> I
 
 
 def near_moments(
-    recording: Recording, pairs: Pairs, reach: Reach, samples: int = 1_000_000
+    recording: Recording, pairs: Pairs, reach: RssParameters, samples: int = 1_000_000
 ) -> Iterator[Moments]:
     """The moments at which a pair is near enough, along and across, for an RSS violation.
 
@@ -166,7 +166,7 @@ class _Pieces:
     width: Floats
 
 
-def _pieces_of(recording: Recording, frames: int, reach: Reach) -> _Pieces:
+def _pieces_of(recording: Recording, frames: int, reach: RssParameters) -> _Pieces:
     begin, end = recording.first_frame // frames, recording.last_frame // frames
     counts = end - begin + 1
     shift = offsets(counts)[:-1] - begin
@@ -205,19 +205,19 @@ def _near(recording: Recording, pieces: _Pieces, pairs: Pairs, part: slice) -> M
         pair, piece, first, second = (x.take(near) for x in (pair, piece, first, second))
     low = np.maximum(chosen.low.take(pair), piece * pieces.frames)
     high = np.minimum(chosen.high.take(pair), piece * pieces.frames + (pieces.frames - 1))
-    found = _moments(recording, pairs, part.start + pair, low, high)
+    moments = _moments(recording, pairs, part.start + pair, low, high)
     counts = high - low + 1
-    inside = np.ones(len(found), bool)
+    inside = np.ones(len(moments), bool)
     for position, bounds in ((recording.s, _along), (recording.d, _across)):
         below, above = bounds(pieces, first, second)
-        apart = position.take(found.second) - position.take(found.first)
+        apart = position.take(moments.second) - position.take(moments.first)
         inside &= apart <= np.repeat(above, counts)
         inside &= apart >= np.repeat(-below, counts)
-    return found.choose(inside)
+    return moments.choose(inside)
 
 
 def _spread(low: Integers, high: Integers) -> tuple[Integers, Integers]:
-    """For each whole number from ``low`` to ``high`` of each entry: its place, and the number."""
+    """Return each whole number from ``low`` to ``high`` of each entry, with the index of the entry."""
     counts = high - low + 1
     place = np.repeat(np.arange(len(low)), counts)
     return place, np.arange(len(place)) + np.repeat(low - offsets(counts)[:-1], counts)
@@ -250,8 +250,8 @@ def pairs_in_sight(recording: Recording, pairs: Pairs, sight: DetectionRange) ->
 
     tests = [DistanceBounds(recording.s, bound(pairs.second, pairs.first), bound(pairs.first, pairs.second))]
     shared = np.zeros(len(pairs), np.uint32)
-    found = ever_within(recording, pairs, tests, shared)
-    return pairs.choose(found), shared[found]
+    in_sight = ever_within(recording, pairs, tests, shared)
+    return pairs.choose(in_sight), shared[in_sight]
 
 
 @dataclass(frozen=True)
@@ -264,12 +264,14 @@ class DistanceBounds:
 
 
 def _along(pieces: _Pieces, first: Integers, second: Integers) -> tuple[Floats, Floats]:
-    """How far ``second`` may be behind ``first`` for a longitudinal violation, and how far ahead of it."""
+    """Return how far ``second`` may be behind ``first`` for a longitudinal violation, and how far ahead of
+    it.
+    """
     return _bound_along(pieces, second, first), _bound_along(pieces, first, second)
 
 
 def _across(pieces: _Pieces, first: Integers, second: Integers) -> tuple[Floats, Floats]:
-    """The same across, to the right and to the left."""
+    """Return how far ``second`` may be right and left of ``first`` for a lateral violation."""
     bound = _bound_across(pieces, first, second)
     return bound + pieces.width.take(first), bound + pieces.width.take(second)
 
@@ -285,13 +287,13 @@ def _bound_across(pieces: _Pieces, first: Integers, second: Integers) -> Floats:
     return bound
 
 
-def _stopping(reach: Reach, greatest: Floats) -> Floats:
+def _stopping(reach: RssParameters, greatest: Floats) -> Floats:
     braking = (greatest + reach.a_max * reach.rho) ** 2 / (2 * reach.b_min)
     way: Floats = greatest * reach.rho + reach.a_max * reach.rho**2 / 2
     return way + braking
 
 
-def _aside(reach: Reach, greatest: Floats) -> Floats:
+def _aside(reach: RssParameters, greatest: Floats) -> Floats:
     braking = 2 * (greatest + reach.rho * reach.a_max_lat) ** 2 / (2 * reach.b_min_lat)
     return 2 * greatest * reach.rho + reach.a_max_lat * reach.rho**2 + braking + 0.001
 
@@ -299,12 +301,12 @@ def _aside(reach: Reach, greatest: Floats) -> Floats:
 def ever_within(
     recording: Recording, pairs: Pairs, tests: list[DistanceBounds], shared: Masks | None = None
 ) -> Bools:
-    """For each pair whether all ``tests`` hold in one and the same common frame.
+    """Return for each pair whether all ``tests`` hold in one common frame.
 
     With ``shared`` (one entry a pair), both boxes must be in a common lane in that frame, and the
     lanes where that ever is so are written to it.
     """
-    found = np.zeros(len(pairs), bool)
+    within = np.zeros(len(pairs), bool)
     for part in _parts(pairs, 500_000):
         chosen = pairs.choose(part)
         counts = chosen.samples
@@ -321,8 +323,8 @@ def ever_within(
             lanes = np.where(inside, recording.occupancy[first] & recording.occupancy[second], 0)
             shared[part] = np.bitwise_or.reduceat(lanes, begin)
             inside &= lanes != 0
-        found[part] = np.logical_or.reduceat(inside, begin)
-    return found
+        within[part] = np.logical_or.reduceat(inside, begin)
+    return within
 
 
 def row_of(recording: Recording, vehicle: Integers, frame: Integers) -> Integers:

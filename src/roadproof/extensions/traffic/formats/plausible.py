@@ -1,4 +1,4 @@
-"""Whether a recording contradicts itself: motion against positions, sizes against classes and lanes.
+"""Finds contradictions in a recording: motion against positions, sizes against classes and lanes.
 
 Each rule is asked of many samples or vehicles. Above a stated share of broken ones the recording is
 refused, below it the rule is a note. The constants are argued for in docs/how-to/highd.md.
@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from roadproof.extensions.traffic.formats.clock import Rate, samples_in
 from roadproof.extensions.traffic.formats.factors import common_factor, hint_on
-from roadproof.extensions.traffic.formats.median import Median, Scale, integrate
+from roadproof.extensions.traffic.formats.median import Median, SpeedScale, integrate
 from roadproof.extensions.traffic.formats.recording import (
     Bools,
     Floats,
@@ -46,7 +46,7 @@ SIZES = {"Car": ((2.0, 8.0), (1.0, 3.0)), "Truck": ((4.0, 30.0), (1.4, 3.5))}
 
 
 @dataclass(frozen=True)
-class Implausible:
+class Contradiction:
     """A rule of which ``broken`` of ``asked`` places break it, first at sample ``row``.
 
     ``signal`` is what the cell there says; ``refused`` where there are too many; ``hint``: what may be wrong
@@ -65,12 +65,12 @@ class Implausible:
     factor: float | None = None
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         """The rule, and how often it is broken."""
         return f"{self.rule}{self.hint} ({self.broken} of {self.asked} {self.unit})"
 
 
-def check(recording: Recording) -> "ContradictionChecks":
+def contradiction_checks(recording: Recording) -> "ContradictionChecks":
     """The checks of a whole recording."""
     checks = ContradictionChecks(recording.rate, recording.lanes)
     checks.add(recording)
@@ -79,7 +79,7 @@ def check(recording: Recording) -> "ContradictionChecks":
 
 @dataclass(frozen=True)
 class OffRoad:
-    """How many vehicles are on no lane at any time, and the first, with its first sample.
+    """The number of vehicles that are never on a lane, and the first of them, with its first sample.
 
     ``refused`` where they are too many.
     """
@@ -91,7 +91,7 @@ class OffRoad:
 
 
 @dataclass(frozen=True)
-class _Rate:
+class _RateRule:
     """A signal and what its rate of change is said to be; a window moves where either changes by ``least``.
 
     The two may differ by ``share`` of the greater and ``slack``.
@@ -106,20 +106,20 @@ class _Rate:
 
 
 _RATES = (
-    _Rate("s", "v_lon", 1.0, 0.1, 0.2, "velocities along the road and positions"),
-    _Rate("d", "v_lat", 0.3, 0.5, 0.1, "velocities across the road and positions"),
-    _Rate("v_lon", "a_lon", 0.5, 0.5, 0.25, "accelerations along the road and velocities"),
+    _RateRule("s", "v_lon", 1.0, 0.1, 0.2, "velocities along the road and positions"),
+    _RateRule("d", "v_lat", 0.3, 0.5, 0.1, "velocities across the road and positions"),
+    _RateRule("v_lon", "a_lon", 0.5, 0.5, 0.25, "accelerations along the road and velocities"),
 )
 
 
 @dataclass
-class _Motion:
-    """What a signal changes by in a second against the sum of its rate, five times a second.
+class _MotionCheck:
+    """A comparison of a signal's change in a second with the sum of its rate, five times a second.
 
     The sum goes on from vehicle to vehicle, so that parts of a recording come to what the whole does.
     """
 
-    rule: _Rate
+    rule: _RateRule
     broken: int = 0
     asked: int = 0
     row: int = 0
@@ -132,28 +132,30 @@ class _Motion:
         total = integrate(rate, recording.rate, self.last)
         self.last = float(total[-1]), float(rate[-1])
         begin, end = seconds.begin, seconds.end
-        change, told = signal[end] - signal[begin], total[end] - total[begin]
-        greater = np.maximum(np.abs(change), np.abs(told))
+        change, integral = signal[end] - signal[begin], total[end] - total[begin]
+        greater = np.maximum(np.abs(change), np.abs(integral))
         moved = seconds.whole & (greater > self.rule.least)
-        wrong = np.flatnonzero(moved & (np.abs(change - told) > self.rule.share * greater + self.rule.slack))
+        wrong = np.flatnonzero(
+            moved & (np.abs(change - integral) > self.rule.share * greater + self.rule.slack)
+        )
         if len(wrong) and not self.broken:
             first = begin.start + int(wrong[0]) * begin.step
             self.row = before + _worst(signal, total, first, first + samples_in(recording.rate))
         self.broken += len(wrong)
         self.asked += int(np.count_nonzero(moved))
-        self.factors.append(told[wrong] / np.where(change[wrong] == 0, np.inf, change[wrong]))
+        self.factors.append(integral[wrong] / np.where(change[wrong] == 0, np.inf, change[wrong]))
         return total
 
-    def doubts(self) -> Iterator[Implausible]:
+    def contradictions(self) -> Iterator[Contradiction]:
         if self.broken:
             factors = np.concatenate(self.factors)
             factor = float(np.median(factors))
             refused = _too_many(self.broken, self.asked, SHARE)
-            found = f"{self.rule.what} contradict each other", self.rule.rate, self.row
+            head = f"{self.rule.what} contradict each other", self.rule.rate, self.row
             counts = self.broken, self.asked, "moving seconds"
             most = refused and 2 * self.broken > self.asked
             common = common_factor(factors, factor, self.asked) if most else None
-            yield Implausible(*found, *counts, refused, hint_on(factor) if refused else "", common)
+            yield Contradiction(*head, *counts, refused, hint_on(factor) if refused else "", common)
 
 
 @dataclass(frozen=True)
@@ -182,8 +184,8 @@ def _worst(signal: Floats, total: Floats, begin: int, end: int) -> int:
 
 
 @dataclass
-class _Jumps:
-    """What no vehicle does from one frame to the next: a signal changes by more than ``limit``.
+class _JumpCheck:
+    """A check that no signal changes by more than ``limit`` from one frame to the next.
 
     With a ``rate``, by more than that beside its integral. The share ``most`` of all steps may.
     """
@@ -209,38 +211,38 @@ class _Jumps:
             broken[steps] = inner[steps] & (np.abs(change) > self.limit)
         self.add(broken, before + 1, int(np.count_nonzero(inner)))
 
-    def add(self, broken: Bools, first: int, asked: int) -> None:
-        """``broken`` has an entry a row from row ``first`` on; of ``asked`` steps."""
+    def add(self, broken: Bools, first: int, steps: int) -> None:
+        """``broken`` has an entry a row from row ``first`` on; of ``steps`` steps."""
         if broken.any() and not self.broken:
             self.row = first + int(np.argmax(broken))
         self.broken += int(np.count_nonzero(broken))
-        self.asked += asked
+        self.asked += steps
 
-    def doubts(self) -> Iterator[Implausible]:
+    def contradictions(self) -> Iterator[Contradiction]:
         if self.broken:
             refused = self.broken > self.most * self.asked and (self.broken >= FEWEST or self.most == 0)
-            yield Implausible(self.rule, self.signal, self.row, self.broken, self.asked, "steps", refused)
+            yield Contradiction(self.rule, self.signal, self.row, self.broken, self.asked, "steps", refused)
 
 
-def _steps(rate: Rate) -> tuple[_Jumps, ...]:
+def _steps(rate: Rate) -> tuple[_JumpCheck, ...]:
     moves = f"a vehicle does not move by more than {LARGEST_STEP:g} m from one frame to the next"
     differ = "a position and the velocity differ by more than {:g} m from one frame to the next"
     changes = "a velocity changes by more than {:.2g} m/s from one frame to the next"
     along, across = 30 * (1 / float(rate)) + 0.5, 10 * (1 / float(rate)) + 0.5
     return (
-        _Jumps(moves, "s", LARGEST_STEP, most=0),
-        _Jumps(differ.format(1.0), "s", 1.0, "v_lon"),
-        _Jumps(moves, "d", LARGEST_STEP, most=0),
-        _Jumps(differ.format(0.5), "d", 0.5, "v_lat"),
-        _Jumps(changes.format(along), "v_lon", along),
-        _Jumps(changes.format(across), "v_lat", across),
-        _Jumps("an acceleration is above 15 m/s²", "a_lon", 15),
+        _JumpCheck(moves, "s", LARGEST_STEP, most=0),
+        _JumpCheck(differ.format(1.0), "s", 1.0, "v_lon"),
+        _JumpCheck(moves, "d", LARGEST_STEP, most=0),
+        _JumpCheck(differ.format(0.5), "d", 0.5, "v_lat"),
+        _JumpCheck(changes.format(along), "v_lon", along),
+        _JumpCheck(changes.format(across), "v_lat", across),
+        _JumpCheck("an acceleration is above 15 m/s²", "a_lon", 15),
     )
 
 
 @dataclass(frozen=True)
 class _Vehicles:
-    """What is said once of vehicles; ``start`` is the first row of each."""
+    """The columns with one entry a vehicle; ``start`` is the first row of each."""
 
     length: Floats
     width: Floats
@@ -249,7 +251,7 @@ class _Vehicles:
     start: Integers
 
 
-def _sizes(vehicles: _Vehicles, lanes: tuple[Lane, ...]) -> Iterator[Implausible]:
+def _sizes(vehicles: _Vehicles, lanes: tuple[Lane, ...]) -> Iterator[Contradiction]:
     """Sizes that do not fit the class, that are wider than long, or wider than any lane."""
     length, width, kind = vehicles.length, vehicles.width, vehicles.kind
     yield from _vehicles(vehicles, "a vehicle is wider than it is long", "width", width > length)
@@ -267,18 +269,18 @@ def _sizes(vehicles: _Vehicles, lanes: tuple[Lane, ...]) -> Iterator[Implausible
             yield from _vehicles(vehicles, rule, signal, broken)
 
 
-def _vehicles(vehicles: _Vehicles, rule: str, signal: SizeName, broken: Bools) -> Iterator[Implausible]:
+def _vehicles(vehicles: _Vehicles, rule: str, signal: SizeName, broken: Bools) -> Iterator[Contradiction]:
     count, of = int(np.count_nonzero(broken)), len(vehicles.length)
     if count:
         row, refused = int(vehicles.start[np.argmax(broken)]), _too_many(count, of, SHARE)
-        yield Implausible(rule, signal, row, count, of, "vehicles", refused)
+        yield Contradiction(rule, signal, row, count, of, "vehicles", refused)
 
 
-def _too_many(broken: int, asked: int, share: float) -> bool:
-    return broken >= FEWEST and broken > share * asked
+def _too_many(broken: int, places: int, share: float) -> bool:
+    return broken >= FEWEST and broken > share * places
 
 
-class _Places:
+class _LanePositions:
     """Vehicles of one direction that all drive beside the middle of their lanes, so no corner is tracked."""
 
     def __init__(self, lanes: tuple[Lane, ...]) -> None:
@@ -309,7 +311,7 @@ class _Places:
                 self.rows.setdefault(way, before + min(first))
             self.off[way] = self.off.get(way, np.zeros(2, np.int64)) + np.array([len(x) for x in off])
 
-    def doubts(self, vehicles: _Vehicles) -> Iterator[Implausible]:
+    def contradictions(self, vehicles: _Vehicles) -> Iterator[Contradiction]:
         for way, beside in sorted(self.beside.items()):
             many = int(np.count_nonzero(vehicles.direction == way))
             if many < FEWEST_VEHICLES or not beside.count:
@@ -324,18 +326,18 @@ class _Places:
                     "of their lanes: is a position the upper-left corner of the box?"
                 )
                 refused = abs(median) > OFF_CENTRE[1]
-                yield Implausible(rule, "d", self.rows[way], many, many, "vehicles", refused)
+                yield Contradiction(rule, "d", self.rows[way], many, many, "vehicles", refused)
 
 
 class ContradictionChecks:
-    """What a recording contradicts itself in, whose vehicles are added one after the other, each whole."""
+    """The contradictions within a recording, whose vehicles are added one after the other, each whole."""
 
     def __init__(self, rate: Rate, lanes: tuple[Lane, ...]) -> None:
         self.lanes = lanes
-        self.motion = [_Motion(rule) for rule in _RATES]
-        self.scale = Scale()
+        self.motion = [_MotionCheck(rule) for rule in _RATES]
+        self.scale = SpeedScale()
         *self.steps, self.hard = _steps(rate)
-        self.places = _Places(lanes)
+        self.places = _LanePositions(lanes)
         self.vehicles: list[_Vehicles] = []
         self.on_road: list[Bools] = []
         self.rows = 0
@@ -365,20 +367,22 @@ class ContradictionChecks:
         hard = blockwise(lambda a_lon: np.abs(a_lon) > self.hard.limit, recording.a_lon[first:])
         self.hard.add(hard, self.rows + first, int(np.count_nonzero(inner)))
 
-    def doubts(self) -> list[Implausible]:
-        """Everything that was found, the gravest first."""
+    def contradictions(self) -> list[Contradiction]:
+        """Return all contradictions, the gravest first."""
         if not self.rows:
             return []
         names = _Vehicles.__dataclass_fields__
         whole = _Vehicles(*(np.concatenate([getattr(x, name) for x in self.vehicles]) for name in names))
-        found = [doubt for rule in self.motion for doubt in rule.doubts()]
-        scale = self.scale.told()
+        contradictions = [contradiction for rule in self.motion for contradiction in rule.contradictions()]
+        scale = self.scale.text()
         if scale is not None:
             counts = self.scale.vehicles, len(whole.length)
-            found.append(Implausible(scale, "v_lon", self.scale.row, *counts, "vehicles", False))
-        found += [doubt for step in (*self.steps, self.hard) for doubt in step.doubts()]
-        found += [*_sizes(whole, self.lanes), *self.places.doubts(whole)]
-        return sorted(found, key=lambda doubt: not doubt.refused)
+            contradictions.append(Contradiction(scale, "v_lon", self.scale.row, *counts, "vehicles", False))
+        contradictions += [
+            contradiction for step in (*self.steps, self.hard) for contradiction in step.contradictions()
+        ]
+        contradictions += [*_sizes(whole, self.lanes), *self.places.contradictions(whole)]
+        return sorted(contradictions, key=lambda contradiction: not contradiction.refused)
 
     def off_road(self) -> OffRoad | None:
         """The vehicles that are never on a lane; None where there are none."""

@@ -6,19 +6,23 @@ Samples are grouped by vehicle and consecutive within one: vehicle v owns rows
 ``start[v]:start[v + 1]``, and its row of frame f is ``start[v] + f - first_frame[v]``.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from roadproof.world.road import Lanelet, Zone
 from roadproof.world.signals import KINDS, RECORDED, Kind
+
+if TYPE_CHECKING:
+    from roadproof.world.road import Lanelet, Zone
 
 Column: TypeAlias = npt.NDArray[Any]
 
@@ -33,7 +37,7 @@ def blocks_of(rows: int, overlap: int = 0) -> Iterator[slice]:
 
 
 def blockwise(function: Callable[..., Column], *columns: Column) -> Column:
-    """What ``function`` makes of columns of equal length, where row k of it depends on rows k alone.
+    """Return ``function`` of columns of equal length, computed in blocks; row k must depend on rows k alone.
 
     >>> blockwise(np.add, np.array([1, 2]), np.array([10, 20])).tolist()
     [11, 22]
@@ -82,7 +86,7 @@ class Lane:
 
 @dataclass(frozen=True)
 class Slack:
-    """By how much places along a measured road may be off; an entry a sample.
+    """The largest errors of places along a measured road; an entry a sample.
 
     ``along``, ``across`` (m): ends and sides of the box as it stands in the plane, against s, d and its size;
     infinite where it heads more than 45 degrees away from the road. ``turn`` (rad): how much the road has
@@ -110,10 +114,10 @@ class Recording:
     ``lanelets``: where lanes are more than bands without end, what they consist of, and ``inside``, of shape
     (samples, lanelets), whether the box overlaps each with positive area. On a curved road their bounds only
     tell them apart. ``slack``: what projecting a measured road on a line does to places; None where s and d
-    are measured themselves. ``own``: columns that are no signals of the list, an entry a sample: true and
-    false as 1 and 0, NaN where there is no number. ``label``: what the file calls each vehicle, where
-    ``kind`` puts several together. ``computed``: a storyboard gives places, speeds and accelerations as one
-    motion, so that they are not compared with each other. ``faults``: motions that no vehicle drives.
+    are measured themselves. ``custom_signals``: columns that are no signals of the list, an entry a sample:
+    true and false as 1 and 0, NaN where there is no number. ``label``: what the file calls each vehicle,
+    where ``kind`` puts several together. ``computed``: a storyboard gives places, speeds and accelerations as
+    one motion, so that they are not compared with each other. ``faults``: motions that no vehicle drives.
     """
 
     name: str
@@ -141,21 +145,21 @@ class Recording:
     lanelets: tuple[Lanelet, ...] = ()
     inside: Bools = field(default_factory=lambda: np.zeros((0, 0), np.bool_))
     slack: Slack | None = None
-    own: Mapping[str, Floats] = field(default_factory=dict)
+    custom_signals: Mapping[str, Floats] = field(default_factory=dict)
     label: npt.NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, np.str_))
     computed: bool = False
     faults: tuple[str, ...] = ()
 
     @cached_property
     def kind_code(self) -> Integers:
-        """What kind each vehicle is of, as terms hold it (``signals.KINDS``)."""
+        """The code of each vehicle's kind, as in terms (``signals.KINDS``)."""
         names, index = np.unique(self.label if len(self.label) else self.kind, return_inverse=True)
         codes: Integers = np.array([KINDS.index(kind_called(str(name))) + 1 for name in names], np.int64)
         return codes[index]
 
     @property
     def vehicles(self) -> int:
-        """How many vehicles there are."""
+        """Return how many vehicles there are."""
         return len(self.vehicle_id)
 
     @property
@@ -165,12 +169,12 @@ class Recording:
 
     @property
     def row_vehicle(self) -> Integers:
-        """For each sample, the index of its vehicle."""
+        """The index of the vehicle of each sample."""
         return np.repeat(np.arange(self.vehicles), np.diff(self.start))
 
     @property
     def row_frame(self) -> Integers:
-        """For each sample, its frame."""
+        """The frame of each sample."""
         within: Integers = np.arange(self.start[-1]) - np.repeat(self.start[:-1], np.diff(self.start))
         return within + np.repeat(self.first_frame, np.diff(self.start))
 
@@ -209,15 +213,15 @@ def _own_number(value: object) -> float:
     if isinstance(value, str):
         value = _TRUTHS.get(value.strip().lower(), value)
     try:
-        found = float(value)  # type: ignore[arg-type]
+        number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         return math.nan
-    return found if math.isfinite(found) else math.nan
+    return number if math.isfinite(number) else math.nan
 
 
-def keep_vehicles(recording: Recording, wanted: Bools) -> Recording:
-    """The recording with only the vehicles for which ``wanted`` (one entry a vehicle) is true."""
-    return _part(recording, wanted, np.repeat(wanted, np.diff(recording.start)))
+def keep_vehicles(recording: Recording, selected: Bools) -> Recording:
+    """The recording with only the vehicles for which ``selected`` (one entry a vehicle) is true."""
+    return _part(recording, selected, np.repeat(selected, np.diff(recording.start)))
 
 
 def one_vehicle(recording: Recording, vehicle: int) -> Recording:
@@ -237,8 +241,10 @@ def _part(recording: Recording, vehicles: Bools | slice, rows: Bools | slice) ->
     }
     if recording.slack is not None:
         changed["slack"] = Slack(*(values[rows] for values in vars(recording.slack).values()))
-    own = {name: values[rows] for name, values in recording.own.items()}
-    return replace(recording, **changed, own=own, start=offsets(np.diff(recording.start)[vehicles]))
+    custom = {name: values[rows] for name, values in recording.custom_signals.items()}
+    return replace(
+        recording, **changed, custom_signals=custom, start=offsets(np.diff(recording.start)[vehicles])
+    )
 
 
 def join_vehicles(recording: Recording, guests: Recording) -> Recording:
@@ -253,8 +259,8 @@ def join_vehicles(recording: Recording, guests: Recording) -> Recording:
         raise ValueError("recordings of measured roads cannot be joined")
     if len(recording.moments) or len(guests.moments):
         raise ValueError("recordings whose moments others may show cannot be joined")
-    if any(x.own or len(x.label) for x in (recording, guests)):
-        raise ValueError("recordings with own signals or labels cannot be joined")
+    if any(x.custom_signals or len(x.label) for x in (recording, guests)):
+        raise ValueError("recordings with custom signals or labels cannot be joined")
     if recording.vehicles and guests.vehicle_id.min() <= recording.vehicle_id.max():
         raise ValueError("the ids of the guests must be greater than those of the recording")
     changed: dict[str, Any] = {
@@ -318,14 +324,14 @@ def occupy_bands(
         left, right = d[part], np.round(d[part] - width[part], 6)
         centre = np.round(d[part] - width[part] / 2, 6)
         ours = {way: direction[part] == way for way in {band.direction for band in lanes}}
-        occupied, held = np.zeros(len(left), unsigned), np.zeros(len(left), np.uint8)
+        occupied, lane_number = np.zeros(len(left), unsigned), np.zeros(len(left), np.uint8)
         for k, band in enumerate(lanes):
             assert band.d is not None
             low, high = band.d
             there = ours[band.direction] & (left > low) & (right < high)
             np.bitwise_or(occupied, there.view(np.uint8) * unsigned(1 << k), out=occupied)
             inside = ours[band.direction] & (low <= centre) & (centre < high)
-            np.maximum(held, inside.view(np.uint8) * np.uint8(k + 1), out=held)
-        occupancy[part], lane[part] = occupied, held
+            np.maximum(lane_number, inside.view(np.uint8) * np.uint8(k + 1), out=lane_number)
+        occupancy[part], lane[part] = occupied, lane_number
     lane -= 1
     return occupancy, lane

@@ -19,9 +19,9 @@ from roadproof.extensions.traffic.formats.clock import Rate
 from roadproof.extensions.traffic.formats.plausible import (
     SHARE,
     SHARE_OF_JUMPS,
+    Contradiction,
     ContradictionChecks,
-    Implausible,
-    check,
+    contradiction_checks,
 )
 from roadproof.extensions.traffic.formats.recording import (
     Bools,
@@ -32,9 +32,9 @@ from roadproof.extensions.traffic.formats.recording import (
     one_vehicle,
     with_notes,
 )
-from roadproof.reasons import Reason, Why
+from roadproof.reasons import Reason, ReasonKind
+from roadproof.world.not_read import LEFT_OUT, left_out_in
 from roadproof.world.signals import SignalName
-from roadproof.world.unread import LEFT_OUT, left_out_in
 
 MOST_LEFT_OUT = 0.5
 """Above this share of vehicles that would be left out, a recording is rejected as a whole."""
@@ -58,48 +58,48 @@ class LeftOut:
 
 def left_out_note(vehicles: Sequence[object], of: int, reason: Reason) -> str:
     """A note that so many ``of`` vehicles were left out, with the first of them."""
-    return f"{LEFT_OUT} {len(vehicles)} of {of} vehicles ({named(vehicles)}): {reason}"
+    return f"{LEFT_OUT} {len(vehicles)} of {of} vehicles ({first_names(vehicles)}): {reason}"
 
 
-def losses_of(recording: Recording) -> list[str]:
+def left_out_notes(recording: Recording) -> list[str]:
     """The notes of a recording on vehicles and parts that it was read without, with its name."""
     return [f"recording {recording.name}: {x}" for x in left_out_in(recording.notes)]
 
 
-def named(vehicles: Sequence[object]) -> str:
+def first_names(vehicles: Sequence[object]) -> str:
     """The first vehicles of some."""
     return ", ".join(map(str, vehicles[:SHOWN])) + (", …" if len(vehicles) > SHOWN else "")
 
 
-def reliable(
-    recording: Recording, strict: bool, doubts: Callable[[ContradictionChecks, Integers], Iterable[str]]
+def reliable_part(
+    recording: Recording, strict: bool, notes_on: Callable[[ContradictionChecks, Integers], Iterable[str]]
 ) -> Recording:
-    """The part of a recording that stands, with notes on what was left out and on ``doubts``.
+    """The part of a recording that stands, with notes on what was left out and on ``notes_on``.
 
-    ``doubts`` gets the checks of a part and its rows of the whole, and gives notes; it raises
+    ``notes_on`` gets the checks of a part and its rows of the whole, and gives notes; it raises
     ``InputError`` where the part contradicts itself too much. ``strict``: leave nothing out.
     """
     rows = np.arange(len(recording.s))
     if strict:
-        return with_notes(recording, doubts(check(recording), rows))
-    found = selection_of(lambda: iter((recording,)))
-    out = len(found.lost)
+        return with_notes(recording, notes_on(contradiction_checks(recording), rows))
+    selection = selection_of(lambda: iter((recording,)))
+    out = len(selection.lost)
     if out > MOST_LEFT_OUT * recording.vehicles:
-        return with_notes(recording, _rejecting(recording, rows, out, doubts))
-    if found.lost:
-        rows = rows[np.repeat(~np.isin(recording.vehicle_id, found.lost), np.diff(recording.start))]
-    part = with_notes(found.of(recording), found.notes)
-    return with_notes(part, doubts(found.checks or check(part), rows))
+        return with_notes(recording, _notes_of_rejected(recording, rows, out, notes_on))
+    if selection.lost:
+        rows = rows[np.repeat(~np.isin(recording.vehicle_id, selection.lost), np.diff(recording.start))]
+    part = with_notes(selection.of(recording), selection.notes)
+    return with_notes(part, notes_on(selection.checks or contradiction_checks(part), rows))
 
 
-def _rejecting(
+def _notes_of_rejected(
     recording: Recording,
     rows: Integers,
     out: int,
-    doubts: Callable[[ContradictionChecks, Integers], Iterable[str]],
+    notes_on: Callable[[ContradictionChecks, Integers], Iterable[str]],
 ) -> list[str]:
     try:
-        return [*doubts(check(recording), rows)]
+        return [*notes_on(contradiction_checks(recording), rows)]
     except InputError as error:
         raise too_many(error, out, recording.vehicles) from None
 
@@ -112,8 +112,8 @@ def too_many(error: InputError, out: int, of: int) -> InputError:
 
 
 @dataclass
-class Selection:
-    """What a recording is read without. ``lost``: ids; ``repaired``: ids by the signal that is computed.
+class VehicleSelection:
+    """The vehicles to leave out (``lost``: ids) and to repair (``repaired``: ids by the computed signal).
 
     ``factor``: by which accelerations along the road of all vehicles are off.
     ``vehicles``: how many there are; ``checks``: those of the part that it is read as, where they were made.
@@ -129,7 +129,7 @@ class Selection:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """On what was computed, and on vehicles that were left out."""
+        """Return notes on computed values and on omitted vehicles."""
         return (*self.repairs, *(left_out_note(x.vehicles, self.vehicles, x.reason) for x in self.found))
 
     def of(self, part: Recording) -> Recording:
@@ -143,13 +143,13 @@ class Selection:
 
 
 def stands(checks: ContradictionChecks) -> bool:
-    """Whether nothing has to be left out of a recording with these checks."""
-    return checks.off_road() is None and not any(x.refused for x in checks.doubts())
+    """Return whether nothing has to be left out of a recording with these checks."""
+    return checks.off_road() is None and not any(x.refused for x in checks.contradictions())
 
 
-def selection_of(parts: Callable[[], Iterator[Recording]]) -> Selection:
-    """What to leave out of a recording, whose vehicles come in ``parts``, each time in the same ones."""
-    chosen = Selection()
+def selection_of(parts: Callable[[], Iterator[Recording]]) -> VehicleSelection:
+    """Return the vehicles to leave out of a recording that comes in ``parts``, the same at each call."""
+    chosen = VehicleSelection()
     while True:
         checks: ContradictionChecks | None = None
         count = 0
@@ -160,25 +160,27 @@ def selection_of(parts: Callable[[], Iterator[Recording]]) -> Selection:
         chosen.vehicles, chosen.checks = chosen.vehicles or count, checks
         if checks is None or not count or stands(checks):
             return chosen
-        rules = {x.rule: x for x in checks.doubts() if x.refused}
+        rules = {x.rule: x for x in checks.contradictions() if x.refused}
         rule = next(iter(rules)) if checks.off_road() is None else None
         broken = [int(x) for part in map(chosen.of, parts()) for x in part.vehicle_id[_broken(part, rule)]]
-        signal = None if rule is None else _computed(rules[rule])
+        signal = None if rule is None else _computable_signal(rules[rule])
         factor = None if rule is None else rules[rule].factor
         if signal == "a_lon" and factor is not None and chosen.factor is None:
-            _undo(chosen, factor)
+            _choose_factor(chosen, factor)
             continue
         if signal is not None and signal not in chosen.repaired:
-            _repair(chosen, parts, signal, broken)
+            _choose_repair(chosen, parts, signal, broken)
             continue
         if not broken:
             return chosen  # it is a fault of all together, and the recording is rejected for it
-        chosen.found.append(LeftOut(Why.OFF_ROAD() if rule is None else Why.TOLD(rule), tuple(broken)))
+        chosen.found.append(
+            LeftOut(ReasonKind.OFF_ROAD() if rule is None else ReasonKind.TOLD(rule), tuple(broken))
+        )
         chosen.lost += broken
 
 
 def _broken(part: Recording, rule: str | None) -> Bools:
-    """Which vehicles of a part break a rule, each looked at alone; None: that each is on the road."""
+    """Return which vehicles of a part break a rule, each looked at alone; None: that each is on the road."""
     if not part.vehicles:
         return np.zeros(0, np.bool_)
     if rule is None:
@@ -187,14 +189,14 @@ def _broken(part: Recording, rule: str | None) -> Bools:
     return np.array([_breaks(part, k, rule) for k in range(part.vehicles)], np.bool_)
 
 
-def _computed(rule: Implausible) -> SignalName | None:
+def _computable_signal(rule: Contradiction) -> SignalName | None:
     """The signal that is computed from others where it breaks a rule; None where there is none."""
     moving = rule.unit == "moving seconds"
     return next((x for x in _REPAIRED if moving and x == rule.signal), None)
 
 
-def _repair(
-    chosen: Selection, parts: Callable[[], Iterator[Recording]], signal: SignalName, broken: list[int]
+def _choose_repair(
+    chosen: VehicleSelection, parts: Callable[[], Iterator[Recording]], signal: SignalName, broken: list[int]
 ) -> None:
     """Choose a signal of some vehicles to be computed.
 
@@ -207,10 +209,10 @@ def _repair(
     chosen.repaired[signal] = ids
     of = chosen.vehicles - len(chosen.lost)
     if ids:
-        chosen.repairs.append(_REPAIRED[signal].format(f"{len(ids)} of {of} vehicles ({named(ids)})"))
+        chosen.repairs.append(_REPAIRED[signal].format(f"{len(ids)} of {of} vehicles ({first_names(ids)})"))
 
 
-def _undo(chosen: Selection, factor: float) -> None:
+def _choose_factor(chosen: VehicleSelection, factor: float) -> None:
     """Choose to undo a factor of the accelerations along the road of all vehicles."""
     chosen.factor = factor
     made = f"divided by {factor:g}" if factor else "computed from the velocities"
@@ -228,19 +230,21 @@ def _without_factor(recording: Recording, factor: float) -> Recording:
 
 
 def _breaks(recording: Recording, vehicle: int, rule: str) -> bool:
-    """Whether a vehicle alone breaks a rule, above the share that a recording may."""
-    for doubt in check(one_vehicle(recording, vehicle)).doubts():
-        if doubt.rule == rule:
-            share = {"moving seconds": SHARE, "steps": SHARE_OF_JUMPS}.get(doubt.unit, 0.0)
-            return doubt.refused or doubt.broken > share * doubt.asked
+    """Return whether a vehicle alone breaks a rule, above the share that a recording may."""
+    for contradiction in contradiction_checks(one_vehicle(recording, vehicle)).contradictions():
+        if contradiction.rule == rule:
+            share = {"moving seconds": SHARE, "steps": SHARE_OF_JUMPS}.get(contradiction.unit, 0.0)
+            return contradiction.refused or contradiction.broken > share * contradiction.asked
     return False
 
 
 def contradicts_motion(recording: Recording, vehicle: int) -> bool:
-    """Whether the places of a vehicle contradict its velocities, above the share that a recording may."""
+    """Return whether the places of a vehicle contradict its velocities, above the share that a recording
+    may.
+    """
     limits = {"moving seconds": SHARE, "steps": SHARE_OF_JUMPS}
-    doubts = check(one_vehicle(recording, vehicle)).doubts()
-    return any(x.unit in limits and x.broken > limits[x.unit] * x.asked for x in doubts)
+    contradictions = contradiction_checks(one_vehicle(recording, vehicle)).contradictions()
+    return any(x.unit in limits and x.broken > limits[x.unit] * x.asked for x in contradictions)
 
 
 def _repaired(recording: Recording, signal: SignalName, vehicles: Bools) -> Recording:
@@ -259,7 +263,7 @@ def _repaired(recording: Recording, signal: SignalName, vehicles: Bools) -> Reco
 
 
 def _heads_along(recording: Recording) -> Bools:
-    """Which boxes are turned in the plane, and head along the road but for a share of their samples."""
+    """Return which boxes have a heading, and head along the road in all but a share of their samples."""
     if recording.slack is None or not recording.vehicles:
         return np.zeros(recording.vehicles, np.bool_)
     beside = np.add.reduceat(~np.isfinite(recording.slack.along), recording.start[:-1])
@@ -268,7 +272,7 @@ def _heads_along(recording: Recording) -> Bools:
 
 
 def rate_of_change(values: Floats, rate: Rate) -> Floats:
-    """What values change by in a second, by central differences; zero for a single value."""
+    """Return the change of values per second, by central differences; zero for a single value."""
     if len(values) < 2:
         return np.zeros(len(values))
     changes: Floats = np.gradient(values) * float(rate)

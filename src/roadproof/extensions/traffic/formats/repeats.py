@@ -1,4 +1,4 @@
-"""What several windows of one recording both show, so that it counts once.
+"""Identification of pairs that several windows of a recording show, which count once.
 
 A vehicle at a moment is known again by how it moves in the next half second (``Recording.moments``), a
 pair by both at once, wherever the windows put time 0, the origin and the vehicles' ids.
@@ -46,7 +46,7 @@ class FramePair:
     keys: tuple[int, ...]
 
 
-def see_pair(recording: Recording, first: int, second: int, violating: bool) -> FramePair:
+def frame_pair(recording: Recording, first: int, second: int, violating: bool) -> FramePair:
     """The pair of two vehicle indices."""
     low = int(max(recording.first_frame[first], recording.first_frame[second]))
     high = int(min(recording.last_frame[first], recording.last_frame[second]))

@@ -1,7 +1,7 @@
 """Samples of vehicles in road coordinates, as CSV or Parquet: a recording, or one trace.
 
 A file has the columns ``HEADER``, and may have ``kind`` (a class such as Car, which is the default, or
-Truck), and columns of users' own signals; SI units and coordinates are those of semantics §2.
+Truck), and columns of custom signals; SI units and coordinates are those of semantics §2.
 NAME_road.toml beside NAME.csv or NAME.parquet, in the form of models/roads, says where its lanes are.
 """
 
@@ -18,13 +18,14 @@ import numpy.typing as npt
 
 from roadproof.errors import InputError
 from roadproof.extensions.traffic.formats.clock import Clock, clock_of, rate_text
-from roadproof.extensions.traffic.formats.contradictions import contradictions
+from roadproof.extensions.traffic.formats.content import columns_not_read_note
+from roadproof.extensions.traffic.formats.contradictions import contradiction_notes
 from roadproof.extensions.traffic.formats.plausible import (
     LARGEST_ACCELERATION,
     LARGEST_SIZE,
     LARGEST_SPEED,
     ContradictionChecks,
-    check,
+    contradiction_checks,
 )
 from roadproof.extensions.traffic.formats.recording import (
     Floats,
@@ -33,17 +34,17 @@ from roadproof.extensions.traffic.formats.recording import (
     own_numbers,
     with_notes,
 )
-from roadproof.extensions.traffic.formats.reliable import MOST_LEFT_OUT, left_out_note, reliable
+from roadproof.extensions.traffic.formats.reliable import MOST_LEFT_OUT, left_out_note, reliable_part
 from roadproof.extensions.traffic.formats.row_order import by_time, by_vehicle, steps_of
 from roadproof.extensions.traffic.formats.source import first_line
-from roadproof.extensions.traffic.formats.straight import StraightRoad, of_road, record
+from roadproof.extensions.traffic.formats.straight import StraightRoad, of_road, place_recording
 from roadproof.extensions.traffic.formats.table import (
     RULES,
     CellError,
     Column,
+    ColumnTable,
     Frame,
     Kind,
-    Table,
     cell_error,
     count_lines,
     polars_module,
@@ -51,37 +52,39 @@ from roadproof.extensions.traffic.formats.table import (
     read_table,
 )
 from roadproof.library.roles import vehicle_order
-from roadproof.reasons import Why
+from roadproof.reasons import ReasonKind
 from roadproof.runtime.file_kind import other_format
 from roadproof.runtime.files import refuse_name
 from roadproof.world.models import load_recorded_road, load_road
+from roadproof.world.not_read import road_not_read_note
 from roadproof.world.signals import RECORDED, SIGNALS, SIZES
-from roadproof.world.unread import unread_columns, unread_of_road
 
 PIECE = 250_000
 """Rows of a large file that are in memory at once."""
 
 
-def read_parquet(path: Path, wanted: Mapping[str, Kind], optional: Mapping[str, Kind]) -> Table:
-    """The columns of a Parquet file with ``wanted`` and perhaps ``optional`` columns, in any order.
+def read_parquet(path: Path, required: Mapping[str, Kind], optional: Mapping[str, Kind]) -> ColumnTable:
+    """The columns of a Parquet file with ``required`` and perhaps ``optional`` columns, in any order.
 
     Whole numbers may stand for texts; further columns are read as lists. Raises ``InputError``.
     """
     with _readable(path):
         frame = polars_module().read_parquet(path, use_pyarrow=False, glob=False)
-    return _table(path, frame, wanted, optional)
+    return _table(path, frame, required, optional)
 
 
-def parquet_pieces(path: Path, wanted: Mapping[str, Kind], optional: Mapping[str, Kind]) -> Iterator[Table]:
-    """As ``read_parquet``, in pieces of PIECE rows, of which one at a time is in memory."""
+def parquet_pieces(
+    path: Path, required: Mapping[str, Kind], optional: Mapping[str, Kind]
+) -> Iterator[ColumnTable]:
+    """Yield the columns (see ``read_parquet``) in pieces of PIECE rows, one in memory at a time."""
     for begin in range(0, max(1, count_rows(path)), PIECE):
         with _readable(path):
             frame = polars_module().scan_parquet(path, glob=False).slice(begin, PIECE).collect()
-        yield _table(path, frame, wanted, optional, begin)
+        yield _table(path, frame, required, optional, begin)
 
 
 def count_rows(path: Path) -> int:
-    """How many rows a Parquet file has. Raises ``InputError``."""
+    """Return how many rows a Parquet file has. Raises ``InputError``."""
     pl = polars_module()
     with _readable(path):
         return int(pl.scan_parquet(path, glob=False).select(pl.len()).collect().item())
@@ -94,28 +97,32 @@ def _readable(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        told = error.strerror or str(error).partition("\n")[0][:200]
-        raise InputError(f"{path}: the file cannot be read ({told}); check the path") from None
+        reason = error.strerror or str(error).partition("\n")[0][:200]
+        raise InputError(f"{path}: the file cannot be read ({reason}); check the path") from None
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException) as error:
         with path.open("rb") as file:
             other = other_format(file.read(1000), b"PAR1")
         if other is not None:
             raise InputError(f"{path}: the file {other}") from None
-        told = str(error).partition("\n")[0][:200]
-        raise InputError(f"{path}: no readable Parquet file ({told}); get it again from its source") from None
+        reason = str(error).partition("\n")[0][:200]
+        raise InputError(
+            f"{path}: no readable Parquet file ({reason}); get it again from its source"
+        ) from None
 
 
 def _table(
-    path: Path, frame: Frame, wanted: Mapping[str, Kind], optional: Mapping[str, Kind], before: int = 0
-) -> Table:
+    path: Path, frame: Frame, required: Mapping[str, Kind], optional: Mapping[str, Kind], before: int = 0
+) -> ColumnTable:
     """The columns of rows of a file, of which there are others ``before``."""
-    others = [name for name in frame.columns if name not in wanted and name.isidentifier()]
-    known: dict[str, Kind] = {**wanted, **dict.fromkeys(others, "list"), **optional}
-    missing = [name for name in wanted if name not in frame.columns]
+    others = [name for name in frame.columns if name not in required and name.isidentifier()]
+    known: dict[str, Kind] = {**required, **dict.fromkeys(others, "list"), **optional}
+    missing = [name for name in required if name not in frame.columns]
     extra = [name for name in frame.columns if name not in known]
     if missing or extra:
-        told = f"missing columns {', '.join(missing)}" if missing else f"unknown columns {', '.join(extra)}"
-        raise InputError(f"{path}: {told}; the format has {', '.join(known)}")
+        message = (
+            f"missing columns {', '.join(missing)}" if missing else f"unknown columns {', '.join(extra)}"
+        )
+        raise InputError(f"{path}: {message}; the format has {', '.join(known)}")
     if not frame.height:
         raise InputError(f"{path}: the file has no rows; get it again from its source")
     columns = {
@@ -124,7 +131,7 @@ def _table(
         if name in frame.columns
     }
     places = np.arange(before, before + frame.height) if before else None
-    return Table(path, columns, frame.height, places)
+    return ColumnTable(path, columns, frame.height, places)
 
 
 def _parquet_column(path: Path, values: Any, name: str, kind: Kind, before: int) -> Column:
@@ -145,7 +152,8 @@ def _parquet_column(path: Path, values: Any, name: str, kind: Kind, before: int)
     return array
 
 
-HEADER = ("time", "vehicle", *RECORDED, *SIZES)
+TIME, VEHICLE = "time", "vehicle"
+HEADER = (TIME, VEHICLE, *RECORDED, *SIZES)
 ROAD_ENDING = "_road.toml"
 CONVERTED = ".samples.parquet"
 """How the files of recordings that were converted end; they are none of these."""
@@ -158,22 +166,22 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
 _KINDS: dict[str, Kind] = {name: "text" if name == "vehicle" else "number" for name in HEADER}
 
 
-def read_columns(path: Path) -> Table:
-    """The columns of a file, with ``kind`` and own signals where it has them. Raises ``InputError``."""
+def read_columns(path: Path) -> ColumnTable:
+    """The columns of a file, with ``kind`` and custom signals where it has them. Raises ``InputError``."""
     if path.suffix == ".parquet":
         return read_parquet(path, _KINDS, {"kind": "text"})
     return read_table(path, *_header_of(path))
 
 
-def column_pieces(path: Path) -> Iterator[Table]:
-    """The same in pieces, of which one at a time is in memory. Raises ``InputError``."""
+def column_pieces(path: Path) -> Iterator[ColumnTable]:
+    """Yield the columns of a file in pieces, one in memory at a time. Raises ``InputError``."""
     if path.suffix == ".parquet":
         return parquet_pieces(path, _KINDS, {"kind": "text"})
     return read_pieces(path, *_header_of(path))
 
 
 def count_samples(path: Path) -> int:
-    """How many rows a file has. Raises ``InputError``."""
+    """Return how many rows a file has. Raises ``InputError``."""
     return count_rows(path) if path.suffix == ".parquet" else count_lines(path) - 1
 
 
@@ -187,15 +195,15 @@ def _header_of(path: Path) -> tuple[tuple[str, ...], dict[str, Kind]]:
     return names, {**_KINDS, **kinds}
 
 
-def own_columns(names: Iterable[str]) -> tuple[str, ...]:
-    """Those of the columns that may be own signals, which none is of the list of signals."""
+def custom_signal_columns(names: Iterable[str]) -> tuple[str, ...]:
+    """Return the columns that may be custom signals, none of which is a known signal."""
     return tuple(name for name in names if name not in (*HEADER, *SIGNALS, "kind", LABEL))
 
 
-def unread_of(columns: Table, strict: bool) -> tuple[str, ...]:
+def ignored_column_notes(columns: ColumnTable, strict: bool) -> tuple[str, ...]:
     """A note on columns of signals that no recording has, such as jerk; refused if ``strict``."""
-    read = (*HEADER, "kind", LABEL, *own_columns(columns.columns))
-    return unread_columns(columns.path, columns.columns, read, {}, strict)
+    read = (*HEADER, "kind", LABEL, *custom_signal_columns(columns.columns))
+    return columns_not_read_note(columns.path, columns.columns, read, {}, strict)
 
 
 def read_recording(path: Path, strict: bool = True, road: str | None = None) -> Recording:
@@ -204,13 +212,13 @@ def read_recording(path: Path, strict: bool = True, road: str | None = None) -> 
     Raises ``InputError``. Vehicles that are not called by whole numbers are numbered; ``notes`` tell how.
     """
     columns = read_columns(path)
-    unread = (*unread_of(columns, strict), *unread_of_named(road, strict))
-    return recording_of(columns, road_of(path, road), path.stem, unread, strict)
+    not_read = (*ignored_column_notes(columns, strict), *ignored_map_notes(road, strict))
+    return recording_of(columns, road_of(path, road), path.stem, not_read, strict)
 
 
-def unread_of_named(road: str | None, strict: bool) -> tuple[str, ...]:
+def ignored_map_notes(road: str | None, strict: bool) -> tuple[str, ...]:
     """The note on parts of the map of a named road that were not read; refused if ``strict``."""
-    return () if road is None else unread_of_road(load_road(road), strict)
+    return () if road is None else road_not_read_note(load_road(road), strict)
 
 
 def road_of(path: Path, road: str | None = None) -> StraightRoad:
@@ -219,13 +227,13 @@ def road_of(path: Path, road: str | None = None) -> StraightRoad:
         return of_road(load_road(road), DIRECTION, path)
     road_file = path.with_name(f"{path.stem}{ROAD_ENDING}")
     if not road_file.is_file():
-        told = f"{road_file.name} is missing beside it, which says where the lanes are; or give --road"
-        raise InputError(f"{path}: {told}")
+        message = f"{road_file.name} is missing beside it, which says where the lanes are; or give --road"
+        raise InputError(f"{path}: {message}")
     return of_road(load_recorded_road(road_file)[0], DIRECTION, road_file)
 
 
 def recording_of(
-    columns: Table,
+    columns: ColumnTable,
     road: StraightRoad,
     name: str,
     notes: tuple[str, ...] = (),
@@ -237,36 +245,38 @@ def recording_of(
     Unless it is ``strict``, vehicles of which a cell breaks a rule, and bad ones, are left out.
     ``computed``: places, speeds and accelerations are those of one motion, and are not compared.
     """
-    table, recording, told = _readable_part(columns, road, name, strict)
+    table, recording, cell_notes = _readable_part(columns, road, name, strict)
     recording = replace(recording, computed=computed)
-    return reliable(with_notes(recording, (*notes, *told)), strict, partial(_check_plausible, table))
+    return reliable_part(
+        with_notes(recording, (*notes, *cell_notes)), strict, partial(_check_plausible, table)
+    )
 
 
 def _readable_part(
-    columns: Table, road: StraightRoad, name: str, strict: bool
-) -> tuple[Table, Recording, tuple[str, ...]]:
+    columns: ColumnTable, road: StraightRoad, name: str, strict: bool
+) -> tuple[ColumnTable, Recording, tuple[str, ...]]:
     """The rows by vehicle and their recording, with notes. Raises ``InputError``.
 
     Without vehicles of which a cell breaks a rule, where it is not ``strict`` and they are not too many.
     """
     names = columns["vehicle"].astype(np.str_)
-    everyone, wanted, faults = np.unique(names), np.ones(columns.rows, np.bool_), dict[str, CellError]()
+    everyone, usable, faults = np.unique(names), np.ones(columns.rows, np.bool_), dict[str, CellError]()
     known = len(everyone)
     while True:
         try:
-            rows = in_order(columns if wanted.all() else columns.at(np.flatnonzero(wanted)), everyone)
+            rows = in_order(columns if usable.all() else columns.at(np.flatnonzero(usable)), everyone)
             recording = vehicles_of(rows.table, rows.ids, rows.clock, road, name)
             break
         except CellError as error:
             if strict or len(faults) + 1 > MOST_LEFT_OUT * known:
                 raise next(iter(faults.values()), error) from None
             faults[str(names[error.place])] = error
-            wanted &= names != names[error.place]
-    left_out = (left_out_note([vehicle], known, Why.TOLD(x.told)) for vehicle, x in faults.items())
+            usable &= names != names[error.place]
+    left_out = (left_out_note([vehicle], known, ReasonKind.TOLD(x.told)) for vehicle, x in faults.items())
     return rows.table, recording, (*left_out, *rows.numbered, *rows.notes, *rows.clock.notes)
 
 
-def doubts_in(columns: Table, road: StraightRoad, computed: bool = False) -> tuple[str, ...]:
+def contradictions_in(columns: ColumnTable, road: StraightRoad, computed: bool = False) -> tuple[str, ...]:
     """Notes on what samples contradict themselves in, as a recording of them has.
 
     Raises ``InputError`` where the contradictions are too large or too many.
@@ -274,12 +284,12 @@ def doubts_in(columns: Table, road: StraightRoad, computed: bool = False) -> tup
     """
     rows = in_order(columns)
     recording = vehicles_of(rows.table, rows.ids, rows.clock, road, columns.path.stem)
-    checks = check(replace(recording, computed=computed))
-    doubts = _check_plausible(rows.table, checks, np.arange(rows.table.rows))
-    return (*rows.notes, *rows.clock.notes, *doubts)
+    checks = contradiction_checks(replace(recording, computed=computed))
+    contradictions = _check_plausible(rows.table, checks, np.arange(rows.table.rows))
+    return (*rows.notes, *rows.clock.notes, *contradictions)
 
 
-def vehicles_of(table: Table, ids: Integers, clock: Clock, road: StraightRoad, name: str) -> Recording:
+def vehicles_of(table: ColumnTable, ids: Integers, clock: Clock, road: StraightRoad, name: str) -> Recording:
     """The recording of rows by vehicle, whose numbers are ``ids``, without notes. Raises ``InputError``."""
     first = np.flatnonzero(np.diff(ids, prepend=-1) != 0)
     start = np.append(first, table.rows)
@@ -296,9 +306,11 @@ def vehicles_of(table: Table, ids: Integers, clock: Clock, road: StraightRoad, n
         "first_frame": frames[first],
     }
     return replace(
-        record(road, name, clock.rate, vehicles, counts, (table[x] for x in RECORDED)),
+        place_recording(road, name, clock.rate, vehicles, counts, (table[x] for x in RECORDED)),
         label=table[LABEL].astype(np.str_)[first] if LABEL in table.columns else np.zeros(0, np.str_),
-        own={name: own_numbers(table[name].tolist()) for name in own_columns(table.columns)},
+        custom_signals={
+            name: own_numbers(table[name].tolist()) for name in custom_signal_columns(table.columns)
+        },
     )
 
 
@@ -319,14 +331,14 @@ class Ordered:
     ``numbered``: a note on what vehicles are called. ``notes``: what was done to the rows.
     """
 
-    table: Table
+    table: ColumnTable
     ids: Integers
     clock: Clock
     numbered: tuple[str, ...]
     notes: tuple[str, ...]
 
 
-def in_order(columns: Table, names: npt.NDArray[np.str_] | None = None) -> Ordered:
+def in_order(columns: ColumnTable, names: npt.NDArray[np.str_] | None = None) -> Ordered:
     """The rows by vehicle and time. Raises ``InputError`` where times are no clock or rows contradict.
 
     ``names``: of all vehicles of the file, in order, by default those of the rows.
@@ -340,20 +352,20 @@ def in_order(columns: Table, names: npt.NDArray[np.str_] | None = None) -> Order
     return Ordered(table, ids, clock, numbered, mended.notes(table.path))
 
 
-def frames_of(table: Table, ids: Integers, clock: Clock) -> Integers:
+def frames_of(table: ColumnTable, ids: Integers, clock: Clock) -> Integers:
     """The frame of each row."""
     time = table["time"]
     same = np.diff(ids, prepend=-1) == 0
     frames = clock.frames(time)
-    told = f"samples are {clock.step:g} s apart, so times are whole multiples of 1/{rate_text(clock.rate)} s"
-    told += "; use equal steps"
-    table.require(clock.misses(time) <= clock.slack, "time", told)
-    table.require(~same | (np.diff(frames, prepend=0) == 1), "time", f"{told}, without gaps")
+    rule = f"samples are {clock.step:g} s apart, so times are whole multiples of 1/{rate_text(clock.rate)} s"
+    rule += "; use equal steps"
+    table.require(clock.misses(time) <= clock.slack, "time", rule)
+    table.require(~same | (np.diff(frames, prepend=0) == 1), "time", f"{rule}, without gaps")
     return frames
 
 
-def _check_cells(table: Table, start: Integers) -> None:
-    """No cell may say what no vehicle does, and no vehicle changes its size or drives backwards."""
+def _check_cells(table: ColumnTable, start: Integers) -> None:
+    """Refuse impossible cells, sizes that change, and vehicles that drive backwards."""
     table.require_within(LARGEST_PLACE, "s", "d")
     table.require_within(LARGEST_SPEED, "v_lon", "v_lat")
     table.require_within(LARGEST_ACCELERATION, "a_lon", "a_lat")
@@ -370,7 +382,7 @@ def _check_cells(table: Table, start: Integers) -> None:
     table.require(ends, "s", "a vehicle never ends further back than its length from where it began")
 
 
-def _check_plausible(whole: Table, checks: ContradictionChecks, rows: Integers) -> Iterator[str]:
+def _check_plausible(whole: ColumnTable, checks: ContradictionChecks, rows: Integers) -> Iterator[str]:
     """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
     table = whole if len(rows) == whole.rows else whole.at(rows)
 
@@ -378,4 +390,4 @@ def _check_plausible(whole: Table, checks: ContradictionChecks, rows: Integers) 
         return f"{table.cell(row, signal)} of vehicle {table['vehicle'][row]}"
 
     vehicle_at = partial(table.cell, column="vehicle")
-    return contradictions(table.path, checks, at, vehicle_at, "lanelet of the road")
+    return contradiction_notes(table.path, checks, at, vehicle_at, "lanelet of the road")

@@ -17,7 +17,7 @@ from roadproof.errors import InputError
 from roadproof.extensions.maps.lines import even_line
 from roadproof.extensions.maps.network import MeasuredLane, Network
 from roadproof.extensions.maps.projections import UtmPoint
-from roadproof.extensions.maps.selection import Selection, Stretch, is_map, read_selection
+from roadproof.extensions.maps.selection import SelectedStretch, Selection, is_map, read_selection
 from roadproof.extensions.maps.stretch import select
 from roadproof.extensions.maps.topology import MeasuredLanelet
 from roadproof.extensions.traffic.formats.clock import samples_in
@@ -31,12 +31,12 @@ from roadproof.extensions.traffic.formats.measured_roads import (
     triangles_of,
 )
 from roadproof.extensions.traffic.formats.recording import Bools, Floats, Integers, Recording, offsets
-from roadproof.extensions.traffic.formats.reliable import left_out_note, named
-from roadproof.reasons import Why
+from roadproof.extensions.traffic.formats.reliable import first_names, left_out_note
+from roadproof.reasons import ReasonKind
 from roadproof.world.lanelet_rules import shared_boundaries
+from roadproof.world.not_read import not_read_note
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Lanelet
-from roadproof.world.unread import unread_note
 
 _SPACING = 2.0
 """Metres between the points of a bound, and of the line that s is measured on."""
@@ -70,7 +70,7 @@ def place_on_road(
     return place_on(traffic, network_on(select(path, selection, origin), road, strict))
 
 
-def network_on(stretch: Stretch, called: str, strict: bool = False) -> Network:
+def network_on(stretch: SelectedStretch, called: str, strict: bool = False) -> Network:
     """The lanelets of a stretch in the plane; s is measured on its reference line.
 
     Raises ``InputError`` where it is ``strict`` and parts of the map were not read.
@@ -82,7 +82,9 @@ def network_on(stretch: Stretch, called: str, strict: bool = False) -> Network:
     for name in dict.fromkeys(x.lane for x in stretch.lanelets):
         ours = sorted((x for x in stretch.lanelets if x.lane == name), key=lambda x: x.s[0] or Fraction(0))
         lanes.append(MeasuredLane(name, tuple(x.id for x in ours), 1))
-    told = f"road {called}: edges of its lanes are up to {float(stretch.width_error):.2g} m from the map's"
+    width_note = (
+        f"road {called}: edges of its lanes are up to {float(stretch.width_error):.2g} m from the map's"
+    )
     return Network(
         lanelets,
         {x.id: x.attribute for x in stretch.lanelets},
@@ -90,7 +92,7 @@ def network_on(stretch: Stretch, called: str, strict: bool = False) -> Network:
         tuple(lanes),
         shared_boundaries(stretch.lanelets),
         ((_LINE,),),
-        (told, *unread_note(Path(called.partition("#")[0]), stretch.unread, strict)),
+        (width_note, *not_read_note(Path(called.partition("#")[0]), stretch.unread, strict)),
     )
 
 
@@ -114,65 +116,67 @@ def place_on(traffic: MeasuredTraffic, network: Network) -> tuple[Recording, Int
 
     Raises ``InputError``, which begins with the name of ``traffic``, where none is on it.
     """
-    wanted, notes = _moving(traffic)
-    there = _along(traffic, network) & np.repeat(wanted, np.diff(traffic.start))
-    kept = _longest_runs(there, traffic.start, samples_in(traffic.rate))
-    counts = np.add.reduceat(kept.astype(np.int64), traffic.start[:-1])
+    moving, notes = _moving(traffic)
+    there = _along(traffic, network) & np.repeat(moving, np.diff(traffic.start))
+    chosen_rows = _longest_runs(there, traffic.start, samples_in(traffic.rate))
+    counts = np.add.reduceat(chosen_rows.astype(np.int64), traffic.start[:-1])
     if not counts.any():
         called = network.notes[0].partition(":")[0]
         raise InputError(f"{traffic.name}: no vehicle is on {called} for a second; do map and positions fit?")
-    off = traffic.vehicle_id[wanted & (counts == 0)].tolist()
+    off = traffic.vehicle_id[moving & (counts == 0)].tolist()
     shown = traffic.vehicle_id[(counts > 0) & (counts < np.diff(traffic.start))].tolist()
-    notes += [left_out_note(off, len(wanted), Why.NOT_ALONG())] * bool(off)
+    notes += [left_out_note(off, len(moving), ReasonKind.NOT_ALONG())] * bool(off)
     if shown:
-        notes.append(f"{len(shown)} vehicles ({named(shown)}) count while they are on the road, along it")
-    on_road = replace(_cut(traffic, kept, counts), notes=(*traffic.notes, *notes))
-    return place_traffic(on_road, network), np.flatnonzero(kept)
+        notes.append(
+            f"{len(shown)} vehicles ({first_names(shown)}) count while they are on the road, along it"
+        )
+    on_road = replace(_cut(traffic, chosen_rows, counts), notes=(*traffic.notes, *notes))
+    return place_traffic(on_road, network), np.flatnonzero(chosen_rows)
 
 
 def _along(traffic: MeasuredTraffic, network: Network) -> Bools:
-    """For each sample whether its box is on a lanelet, and turned by at most 45 degrees from the line."""
+    """Return for each sample whether its box is on a lanelet, turned at most 45 degrees from the line."""
     counts = np.diff(traffic.start)
     length, width = (np.repeat(x, counts) for x in (traffic.length, traffic.width))
     boxes = boxes_of(traffic.centre, traffic.heading, length, width)
-    found = np.zeros(len(boxes), np.bool_)
+    along = np.zeros(len(boxes), np.bool_)
     for lane in network.lanes:
         for lanelet in (network.lanelets[x] for x in lane.lanelets):
-            left = np.flatnonzero(~found)
-            found[left] = overlap(boxes[left], triangles_of(lanelet.left, lanelet.right))
-    rows = np.flatnonzero(found)
+            left = np.flatnonzero(~along)
+            along[left] = overlap(boxes[left], triangles_of(lanelet.left, lanelet.right))
+    rows = np.flatnonzero(along)
     way = project(even_line(network.lanelets[_LINE].centre), traffic.centre[rows]).heading
     turned = np.abs(np.remainder(traffic.heading[rows] - way + math.pi, math.tau) - math.pi)
-    found[rows] = turned <= MOST_TURNED
-    return found
+    along[rows] = turned <= MOST_TURNED
+    return along
 
 
 def _moving(traffic: MeasuredTraffic) -> tuple[Bools, list[str]]:
-    """Which vehicles move, with a note on the others."""
+    """Return which vehicles move, with a note on the others."""
     first = np.repeat(traffic.centre[traffic.start[:-1]], np.diff(traffic.start), axis=0)
     away = np.hypot(*(traffic.centre - first).T)
     moving = np.maximum.reduceat(away, traffic.start[:-1]) > _STANDS
     standing = traffic.vehicle_id[~moving].tolist()
-    return moving, [left_out_note(standing, len(moving), Why.STANDING())] if standing else []
+    return moving, [left_out_note(standing, len(moving), ReasonKind.STANDING())] if standing else []
 
 
 def _longest_runs(there: Bools, start: Integers, least: int) -> Bools:
-    """For each vehicle its longest run of rows that are ``there``, if it has at least so many."""
-    kept = np.zeros(len(there), np.bool_)
+    """Return for each vehicle its longest run of true rows, if it has at least ``least`` rows."""
+    longest = np.zeros(len(there), np.bool_)
     for begin, end in pairwise(start.tolist()):
         edges = np.diff(there[begin:end].astype(np.int8), prepend=0, append=0)
         first, last = np.flatnonzero(edges > 0), np.flatnonzero(edges < 0)
         if len(first):
             k = int(np.argmax(last - first))
             if last[k] - first[k] >= least:
-                kept[begin + first[k] : begin + last[k]] = True
-    return kept
+                longest[begin + first[k] : begin + last[k]] = True
+    return longest
 
 
-def _cut(traffic: MeasuredTraffic, kept: Bools, counts: Integers) -> MeasuredTraffic:
+def _cut(traffic: MeasuredTraffic, chosen_rows: Bools, counts: Integers) -> MeasuredTraffic:
     """The rows that are kept, of which each vehicle has so many in a row."""
     some = counts > 0
-    begins = np.flatnonzero(kept)[offsets(counts[some])[:-1]]
+    begins = np.flatnonzero(chosen_rows)[offsets(counts[some])[:-1]]
     return replace(
         traffic,
         vehicle_id=traffic.vehicle_id[some],
@@ -182,8 +186,8 @@ def _cut(traffic: MeasuredTraffic, kept: Bools, counts: Integers) -> MeasuredTra
         width=traffic.width[some],
         first_frame=traffic.first_frame[some] + begins - traffic.start[:-1][some],
         start=offsets(counts[some]),
-        centre=traffic.centre[kept],
-        heading=traffic.heading[kept],
-        velocity=traffic.velocity[kept],
-        acceleration=traffic.acceleration[kept],
+        centre=traffic.centre[chosen_rows],
+        heading=traffic.heading[chosen_rows],
+        velocity=traffic.velocity[chosen_rows],
+        acceleration=traffic.acceleration[chosen_rows],
     )

@@ -1,4 +1,4 @@
-"""What a format of recordings is: how its files are found, read, and named in messages."""
+"""The interface of a format of recordings: how its files are found, read and named in messages."""
 
 import hashlib
 import re
@@ -12,7 +12,7 @@ import numpy as np
 
 from roadproof.extensions.traffic.formats.clock import Rate
 from roadproof.extensions.traffic.formats.recording import BACKWARDS, Recording, backwards, with_notes
-from roadproof.extensions.traffic.formats.table import Table
+from roadproof.extensions.traffic.formats.table import ColumnTable
 from roadproof.extensions.traffic.formats.windows import WindowedRecording, undivided
 from roadproof.world.drive import Drive
 from roadproof.world.road import Road
@@ -52,7 +52,7 @@ class TraceFile(Protocol):
     ``faults``: notes on contradictions; ``computed``: whether samples are worked out, and not measured."""
 
     @property
-    def table(self) -> Table: ...
+    def table(self) -> ColumnTable: ...
 
     @property
     def road(self) -> Road: ...
@@ -102,8 +102,10 @@ class RecordingSource:
     def read(self) -> Recording:
         """Read and check it. Raises ``InputError``."""
         recording = self.format.read(self.files[-1], self.strict)
-        told = backwards(recording.vehicle_id[np.unique(recording.row_vehicle[recording.v_lon < BACKWARDS])])
-        return with_notes(recording, [x for x in told if x not in recording.notes])
+        remarks = backwards(
+            recording.vehicle_id[np.unique(recording.row_vehicle[recording.v_lon < BACKWARDS])]
+        )
+        return with_notes(recording, [x for x in remarks if x not in recording.notes])
 
     def divided(self) -> WindowedRecording:
         """The recording in windows, one where it is small enough. Raises ``InputError``, reading them too."""
@@ -121,7 +123,7 @@ class RecordingSource:
         return [first, *others]
 
     def place_of_rate(self, rate: Rate) -> str:
-        """Where the files say how many samples a second there are."""
+        """Return where the files say how many samples a second there are."""
         return self.format.rate_at.format(*reversed(self.files), rate=rate, step=float(1 / Fraction(rate)))
 
 

@@ -1,4 +1,4 @@
-"""Which recordings a path holds. Extensions add formats to those of this folder."""
+"""Finds the recordings of a path. Extensions add formats to those of this folder."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -6,7 +6,7 @@ from functools import cache, partial
 from pathlib import Path
 
 from roadproof.errors import InputError, UsageError
-from roadproof.extension import imported, listed
+from roadproof.extension import entries, imported
 from roadproof.extensions.maps.selection import is_map, read_selection
 from roadproof.extensions.traffic.formats import converted, exid, highd, ind, ngsim, samples
 from roadproof.extensions.traffic.formats.large import divide_large
@@ -21,25 +21,27 @@ from roadproof.extensions.traffic.formats.source import (
 
 
 def has_numbers(path: Path) -> bool:
-    """Whether a CSV file is of a recording in a format whose vehicles have numbers, by name or content."""
+    """Return whether a CSV file is of a recording in a format whose vehicles have numbers, by name or
+    content.
+    """
     return TRACK_FILES.fullmatch(path.name) is not None or ngsim.is_ngsim(path)
 
 
 def _find_csv(path: Path) -> dict[str, Files]:
-    """In a folder the files with the header of samples, perhaps one that has to be put right."""
-    found = find_files(path, ".csv", samples.ROAD_ENDING)
+    """Return the files of a folder whose header is that of samples, or may be meant to be."""
+    files = find_files(path, ".csv", samples.ROAD_ENDING)
     if path.is_dir():
-        wanted = {"time", "vehicle"}
-        return {x: y for x, y in found.items() if wanted <= set(first_line(y[-1]).split(","))}
-    return {} if has_numbers(path) else found
+        needed = {"time", "vehicle"}
+        return {x: y for x, y in files.items() if needed <= set(first_line(y[-1]).split(","))}
+    return {} if has_numbers(path) else files
 
 
 def _find_parquet(path: Path) -> dict[str, Files]:
-    found = find_files(path, ".parquet", samples.ROAD_ENDING)
-    return {x: y for x, y in found.items() if not y[-1].name.endswith(samples.CONVERTED)}
+    files = find_files(path, ".parquet", samples.ROAD_ENDING)
+    return {x: y for x, y in files.items() if not y[-1].name.endswith(samples.CONVERTED)}
 
 
-def _of_samples(name: str, told: str, find: Callable[[Path], dict[str, Files]]) -> Format:
+def _of_samples(name: str, description: str, find: Callable[[Path], dict[str, Files]]) -> Format:
     """A format of samples, on the road beside them or on one that is named: a model or a stretch of a map."""
 
     def on(road: str) -> Format:
@@ -47,7 +49,7 @@ def _of_samples(name: str, told: str, find: Callable[[Path], dict[str, Files]]) 
         return replace(made, read=read, divide=divide)
 
     rate_at = "{0}, column time in steps of 1/{rate} s"
-    made = Format(name, told, find, samples.read_recording, rate_at, divide_large, on)
+    made = Format(name, description, find, samples.read_recording, rate_at, divide_large, on)
     return made
 
 
@@ -60,7 +62,7 @@ _TABLES = (CSV, PARQUET, converted.FORMAT)
 @cache
 def formats() -> tuple[Format, ...]:
     """All formats of recordings, with those that extensions add."""
-    return (*_MEASURED, *map(imported, listed("formats")), *_TABLES)
+    return (*_MEASURED, *(imported("formats", name) for name in entries("formats")), *_TABLES)
 
 
 def find_sources(path: Path, strict: bool = False, road: str | None = None) -> tuple[RecordingSource, ...]:
@@ -71,25 +73,25 @@ def find_sources(path: Path, strict: bool = False, road: str | None = None) -> t
     """
     if not any(x.is_name(path) for x in formats()):
         raise InputError(f"recordings={path}: not a folder and not a file; check the path")
-    by_format = {x: found for x in formats() if (found := x.find(path))}
+    by_format = {x: files_by_name for x in formats() if (files_by_name := x.find(path))}
     if not by_format:
-        told = "; ".join(f"{x.name}: {x.told}" for x in formats())
+        descriptions = "; ".join(f"{x.name}: {x.told}" for x in formats())
         what = "no recording in it" if path.is_dir() else "no recording"
-        raise InputError(f"recordings={path}: {what}; recordings are {told}")
+        raise InputError(f"recordings={path}: {what}; recordings are {descriptions}")
     if len(by_format) > 1:
         names = " and ".join(x.name for x in by_format)
         raise InputError(
             f"recordings={path}: {names} files in one folder; put them into folders of their own"
         )
-    ((chosen, found),) = by_format.items()
+    ((chosen, files_by_name),) = by_format.items()
     if road is not None:
         if chosen.on_road is None:
             raise UsageError(f"road {road}: {path} has the road of its recording; omit it")
         if is_map(road):
             read_selection(road)
         chosen = chosen.on_road(road)
-        found = chosen.find(path)
-    return tuple(RecordingSource(chosen, name, files, strict, road) for name, files in found.items())
+        files_by_name = chosen.find(path)
+    return tuple(RecordingSource(chosen, name, files, strict, road) for name, files in files_by_name.items())
 
 
 def find_source(path: Path, strict: bool = False, road: str | None = None) -> RecordingSource:

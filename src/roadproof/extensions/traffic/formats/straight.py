@@ -3,16 +3,17 @@
 The road of a recording is a file in the form of models/roads, in the recording's own s and d.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.extensions.traffic.formats.clock import Rate
 from roadproof.extensions.traffic.formats.recording import (
     ZONES,
     Bools,
@@ -29,6 +30,9 @@ from roadproof.extensions.traffic.formats.recording import (
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.signals import RECORDED
 
+if TYPE_CHECKING:
+    from roadproof.extensions.traffic.formats.clock import Rate
+
 MOST_LANES = 32
 """As many as a mask has bits."""
 
@@ -44,7 +48,7 @@ class StraightRoad:
 
 @dataclass(frozen=True)
 class Placement:
-    """For each sample what ``Recording`` has: ``occupancy``, ``lane``, ``zones``, and ``inside``."""
+    """The fields of ``Recording`` that places decide: ``occupancy``, ``lane``, ``zones``, and ``inside``."""
 
     occupancy: Masks
     lane: Integers
@@ -65,7 +69,7 @@ def of_road(road: Road, direction: int, path: Path, others: Iterable[Lane] = ())
     lanes = (*bands, *ours)
     if len(lanes) > MOST_LANES:
         raise InputError(f"{path}: {len(lanes)} lanes; at most {MOST_LANES} are supported")
-    lanelets = (*(whole(lane) for lane in bands), *road.lanelets)
+    lanelets = (*(as_lanelet(lane) for lane in bands), *road.lanelets)
     return StraightRoad(lanes, beside_by_order(bands) | road.adjacent, lanelets)
 
 
@@ -74,7 +78,7 @@ def of_bands(lanes: tuple[Lane, ...]) -> StraightRoad:
     return StraightRoad(lanes, beside_by_order(lanes), ())
 
 
-def whole(lane: Lane) -> Lanelet:
+def as_lanelet(lane: Lane) -> Lanelet:
     """A band as one lanelet of the main road, without end."""
     if lane.d is None:
         raise ValueError(f"lane {lane.name} is no straight band")
@@ -85,7 +89,7 @@ def whole(lane: Lane) -> Lanelet:
 def place(
     road: StraightRoad, direction: Integers, s: Floats, d: Floats, length: Floats, width: Floats
 ) -> Placement:
-    """Where boxes are (semantics §4); all arrays have one entry a sample.
+    """Return where boxes are (semantics §4); all arrays have one entry a sample.
 
     Metres are compared to the micrometre, so that a box which touches a bound in the decimals of its file
     does so here. A centre on a bound is in the lanelet that begins there, or to the left of it.
@@ -108,12 +112,12 @@ def place(
         inside[:, j] = ours & (s > begin) & (rear < end) & (d > low) & (right < high)
         occupancy |= inside[:, j].astype(np.uint32) << np.uint32(k)
         zones |= inside[:, j].astype(np.uint32) << np.uint32(ZONES.index(lanelet.zone))
-        held = (begin <= along) & (along < end) & (low <= across) & (across < high)
-        lane[ours & held] = k
+        in_lanelet = (begin <= along) & (along < end) & (low <= across) & (across < high)
+        lane[ours & in_lanelet] = k
     return Placement(occupancy, lane, zones, inside)
 
 
-def record(
+def place_recording(
     road: StraightRoad,
     name: str,
     rate: Rate,

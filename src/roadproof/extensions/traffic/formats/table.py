@@ -18,8 +18,7 @@ import numpy.typing as npt
 
 from roadproof.errors import InputError, MissingSolverError
 from roadproof.extensions.traffic.formats.content import Content, is_utf_8, strange_byte
-from roadproof.runtime.file_kind import other_table
-from roadproof.runtime.files import whole_file
+from roadproof.runtime.files import atomic_file
 
 if TYPE_CHECKING:
     import polars
@@ -44,16 +43,16 @@ RULES: Mapping[Kind, str] = {
 class CellError(InputError):
     """A cell of the file ``path`` breaks a rule; ``place``: its row among the data rows, from 0."""
 
-    def __init__(self, path: Path, told: str, place: int) -> None:
-        super().__init__(f"{path}, {told}")
-        self.path, self.told, self.place = path, told, place
+    def __init__(self, path: Path, detail: str, place: int) -> None:
+        super().__init__(f"{path}, {detail}")
+        self.path, self.told, self.place = path, detail, place
 
     def __reduce__(self) -> tuple[type[Self], tuple[Path, str, int]]:
         return type(self), (self.path, self.told, self.place)
 
 
 @dataclass(frozen=True)
-class Table:
+class ColumnTable:
     """Columns of equal length by name, and the file that they came from.
 
     ``places``: for each row its place among the rows of the file, where it is another. ``content``: of the
@@ -81,15 +80,17 @@ class Table:
         """Row of the file, column and value of the cell in data row ``row`` (from 0)."""
         return f"row {self.place(row) + 2}, column {column}={self.columns[column][row]}"
 
-    def at(self, order: Column) -> "Table":
+    def at(self, order: Column) -> "ColumnTable":
         """The rows at ``order``; each knows its place in the file."""
         columns = {name: values[order] for name, values in self.columns.items()}
         places = order if self.places is None else self.places[order]
         return replace(self, columns=columns, rows=len(order), places=places)
 
     def is_within(self, most: Mapping[str, float]) -> bool:
-        """Whether no cell of these columns is greater than the most, less than its negative, or no number."""
-        return all(reach_of(self[column]) <= limit for column, limit in most.items())
+        """Return whether no cell of these columns is greater than the most, less than its negative, or no
+        number.
+        """
+        return all(largest_magnitude(self[column]) <= limit for column, limit in most.items())
 
     def require_within(self, most: float, *columns: str) -> None:
         """Raise for the first cell of the columns that is greater than ``most`` or less than -``most``."""
@@ -108,13 +109,15 @@ class Table:
             raise self.refuse(int(np.argmin(holds)), column, rule)
 
 
-def reach_of(values: Column) -> float:
+def largest_magnitude(values: Column) -> float:
     """The greatest magnitude, NaN where there is one."""
     least, greatest = float(values.min()), float(values.max())
     return max(-least, greatest) if least <= greatest else math.nan
 
 
-def without_copies(table: Table, again: npt.NDArray[np.bool_], column: str) -> tuple[Table, tuple[str, ...]]:
+def without_copies(
+    table: ColumnTable, again: npt.NDArray[np.bool_], column: str
+) -> tuple[ColumnTable, tuple[str, ...]]:
     """The rows that do not repeat (``again``) the row before them, and a note. Raises ``InputError``.
 
     Rows that repeat its key and differ from it are refused, at ``column``.
@@ -128,9 +131,11 @@ def without_copies(table: Table, again: npt.NDArray[np.bool_], column: str) -> t
         same[rows] = (one == other) | ((one != one) & (other != other))
         if not same.all():
             row = int(np.argmin(same))
-            first, told = table.place(row - 1) + 2, f"{name} is {values[row]} and {values[row - 1]}"
+            first, difference = table.place(row - 1) + 2, f"{name} is {values[row]} and {values[row - 1]}"
             raise table.refuse(
-                row, column, f"vehicle and {column} occur together once, but row {first} has them; {told}"
+                row,
+                column,
+                f"vehicle and {column} occur together once, but row {first} has them; {difference}",
             )
     return table.at(np.flatnonzero(~again)), copies_note(table.path, len(rows))
 
@@ -158,11 +163,11 @@ def cell_error(path: Path, row: int, column: str, value: object, rule: str) -> I
 def read_table(
     path: Path,
     header: Sequence[str],
-    wanted: Mapping[str, Kind],
+    kinds: Mapping[str, Kind],
     thousands: bool = False,
     gaps: Collection[str] = (),
-) -> Table:
-    """The columns ``wanted`` of a CSV file whose header is exactly ``header``.
+) -> ColumnTable:
+    """The columns ``kinds`` of a CSV file whose header is exactly ``header``.
 
     ``thousands``: whether commas in quoted numbers part them. ``gaps``: columns that may have
     unreadable cells, which come as NaN, as -1 among integers.
@@ -171,17 +176,17 @@ def read_table(
     """
     content, rows = _checked(path, header, thousands)
     try:
-        columns = _columns(content, content.source(), header, wanted, rows)
+        columns = _columns(content, content.source(), header, kinds, rows)
     except InputError:
-        found = _read_fast(content.source(), wanted, rows, gaps) if gaps else None
-        if found is None:
+        columns_with_gaps = _read_fast(content.source(), kinds, rows, gaps) if gaps else None
+        if columns_with_gaps is None:
             raise
-        columns = found
-    return Table(path, columns, rows, content=content)
+        columns = columns_with_gaps
+    return ColumnTable(path, columns, rows, content=content)
 
 
-def read_pieces(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) -> Iterator[Table]:
-    """As ``read_table``, in pieces of about PIECE bytes, of which one at a time is in memory."""
+def read_pieces(path: Path, header: Sequence[str], kinds: Mapping[str, Kind]) -> Iterator[ColumnTable]:
+    """Yield the columns (see ``read_table``) in pieces of about PIECE bytes, one in memory at a time."""
     content, _ = _checked(path, header)
     names, _, _ = content.beginning().partition(b"\n")
     done = 0
@@ -189,8 +194,8 @@ def read_pieces(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) -
         file.readline()
         while piece := file.read(PIECE) + file.readline():
             rows = piece.count(b"\n")
-            columns = _columns(content, names + b"\n" + piece, header, wanted, rows, done)
-            yield Table(path, columns, rows, np.arange(done, done + rows))
+            columns = _columns(content, names + b"\n" + piece, header, kinds, rows, done)
+            yield ColumnTable(path, columns, rows, np.arange(done, done + rows))
             done += rows
     content.require_unchanged()
 
@@ -199,6 +204,8 @@ def _checked(path: Path, header: Sequence[str], thousands: bool = False) -> tupl
     """The content of a file with this header, and the number of its rows. Raises ``InputError``."""
     content = Content.of(path, thousands)
     beginning = content.beginning()
+    from roadproof.runtime.file_kind import other_table  # here: writers load this module, too
+
     other = other_table(beginning, len(header))
     if other is not None:
         raise InputError(f"{path}: the file {other}")
@@ -207,7 +214,7 @@ def _checked(path: Path, header: Sequence[str], thousands: bool = False) -> tupl
 
 
 def count_lines(path: Path) -> int:
-    """How many line breaks a file has."""
+    """Return how many line breaks a file has."""
     return sum(piece.count(b"\n") for piece in Content.of(path).pieces())
 
 
@@ -215,19 +222,19 @@ def _columns(
     content: Content,
     source: Path | bytes,
     header: Sequence[str],
-    wanted: Mapping[str, Kind],
+    kinds: Mapping[str, Kind],
     rows: int,
     before: int = 0,
 ) -> dict[str, Column]:
     """The columns of so many rows, with others ``before`` them. Raises ``InputError`` for a bad cell."""
     path = content.path
-    columns = _read_fast(source, wanted, rows)
+    columns = _read_fast(source, kinds, rows)
     content.require_unchanged()
     if columns is None:
         text = content.all() if isinstance(source, Path) else source
-        _blame(path, text.partition(b"\n")[2], header, wanted, before)
+        _raise_first_bad_cell(path, text.partition(b"\n")[2], header, kinds, before)
         raise InputError(f"{path}: the file is no table of numbers with the columns {', '.join(header)}")
-    for name, kind in wanted.items():
+    for name, kind in kinds.items():
         if kind == "number" and not is_finite(columns[name]):
             row = int(np.argmin(np.isfinite(columns[name])))
             raise cell_error(path, before + row, name, columns[name][row], "a number must be finite")
@@ -235,20 +242,23 @@ def _columns(
 
 
 def is_finite(values: Column) -> bool:
-    """Whether all numbers are finite; their sum is, but for numbers that no format has."""
+    """Return whether all numbers are finite; their sum is, but for numbers that no format has."""
     with np.errstate(invalid="ignore", over="ignore"):
         return bool(math.isfinite(values.sum()) or np.isfinite(values).all())
 
 
-def read_named(path: Path, wanted: Mapping[str, Kind], gaps: Collection[str] = ()) -> Table:
-    """As ``read_table``, for a file that may have other columns too, in any order. Raises ``InputError``."""
+def read_named(path: Path, kinds: Mapping[str, Kind], gaps: Collection[str] = ()) -> ColumnTable:
+    """Return the columns (see ``read_table``) of a file that may have others, in any order.
+
+    Raises ``InputError``.
+    """
     header = Content.of(path).beginning().partition(b"\n")[0].decode("utf-8", "replace").strip().split(",")
-    return read_table(path, header if set(wanted) <= set(header) else tuple(wanted), wanted, gaps=gaps)
+    return read_table(path, header if set(kinds) <= set(header) else tuple(kinds), kinds, gaps=gaps)
 
 
 def write_table(path: Path, columns: Mapping[str, Column], decimals: int | None = None) -> None:
     """Write ``columns`` as CSV, floats with ``decimals`` places; the file appears whole or not at all."""
-    with whole_file(path) as file:
+    with atomic_file(path) as file:
         _write_table(file, columns, decimals)
 
 
@@ -326,7 +336,7 @@ def _check_shape(content: Content, fields: int) -> int:
 
 
 def _read_fast(
-    source: Path | bytes, wanted: Mapping[str, Kind], rows: int, gaps: Collection[str] = ()
+    source: Path | bytes, kinds: Mapping[str, Kind], rows: int, gaps: Collection[str] = ()
 ) -> dict[str, Column] | None:
     """All wanted columns, or None if some cell is wrong, but for those in ``gaps``."""
     pl = polars_module()
@@ -335,8 +345,8 @@ def _read_fast(
     try:
         frame = pl.read_csv(
             source,
-            columns=list(wanted),
-            schema_overrides={name: types[kind] for name, kind in wanted.items()},
+            columns=list(kinds),
+            schema_overrides={name: types[kind] for name, kind in kinds.items()},
             quote_char=None,
             infer_schema=False,
             ignore_errors=bool(gaps),
@@ -344,24 +354,24 @@ def _read_fast(
     except (pl.exceptions.PolarsError, UnicodeDecodeError):
         return None
     full = {
-        name: frame[name].fill_null("") if kind == "list" else frame[name] for name, kind in wanted.items()
+        name: frame[name].fill_null("") if kind == "list" else frame[name] for name, kind in kinds.items()
     }
-    full |= {name: full[name].fill_null(math.nan if wanted[name] == "number" else -1) for name in gaps}
+    full |= {name: full[name].fill_null(math.nan if kinds[name] == "number" else -1) for name in gaps}
     if frame.height != rows or any(values.null_count() for values in full.values()):
         return None
-    return {name: joined(values.get_chunks()) for name, values in full.items()}
+    return {name: concatenated(values.get_chunks()) for name, values in full.items()}
 
 
-def joined(chunks: "Sequence[polars.Series]") -> Column:
+def concatenated(chunks: "Sequence[polars.Series]") -> Column:
     """The values of all chunks, in memory that is kept for the next file, unlike that of polars."""
     return np.concatenate([chunk.to_numpy() for chunk in chunks])
 
 
-def _blame(
-    path: Path, body: bytes, header: Sequence[str], wanted: Mapping[str, Kind], before: int = 0
+def _raise_first_bad_cell(
+    path: Path, body: bytes, header: Sequence[str], kinds: Mapping[str, Kind], before: int = 0
 ) -> None:
     """Read cell by cell and raise for the first one that is wrong; slow, and only after a failure."""
-    places = sorted((header.index(name), name, kind) for name, kind in wanted.items())
+    places = sorted((header.index(name), name, kind) for name, kind in kinds.items())
     for row, line in enumerate(body.decode("utf-8", "replace").split("\n")[:-1], before):
         cells = line.rstrip("\r").split(",")
         if len(cells) != len(header):
@@ -374,7 +384,7 @@ def _blame(
 
 
 def fits_kind(cell: str, kind: Kind) -> bool:
-    """Whether the text of a cell is of a kind."""
+    """Return whether the text of a cell is of a kind."""
     match kind:
         case "text":
             return cell != ""

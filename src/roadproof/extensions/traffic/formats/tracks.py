@@ -12,8 +12,8 @@ from roadproof.extensions.traffic.formats.clock import LARGEST_RATE, Rate, rate_
 from roadproof.extensions.traffic.formats.recording import Bools, Integers, Recording
 from roadproof.extensions.traffic.formats.reliable import MOST_LEFT_OUT, left_out_note
 from roadproof.extensions.traffic.formats.source import TRACK_FILES, Files, first_line, with_suffix
-from roadproof.extensions.traffic.formats.table import CellError, Kind, Table, without_copies
-from roadproof.reasons import Why
+from roadproof.extensions.traffic.formats.table import CellError, ColumnTable, Kind, without_copies
+from roadproof.reasons import ReasonKind
 
 TRACKS = "_tracks.csv"
 RATE_AT = "{2}, row 2, column frameRate={rate}"
@@ -35,15 +35,15 @@ def find_recordings(path: Path, with_ids: bool, files: Callable[[Path, str], Fil
 
     ``with_ids``: files have a column recordingId. ``files``: of the recording of a folder and name.
     """
-    found: dict[str, Files] = {}
+    recordings: dict[str, Files] = {}
     for file in with_suffix(path, ".csv"):
         match = TRACK_FILES.fullmatch(file.name)
         if match is not None and ("recordingId" in first_line(file).split(",")) == with_ids:
-            found[match[1]] = files(file.parent, match[1])
-    return dict(sorted(found.items(), key=lambda entry: (int(entry[0]), entry[0])))
+            recordings[match[1]] = files(file.parent, match[1])
+    return dict(sorted(recordings.items(), key=lambda entry: (int(entry[0]), entry[0])))
 
 
-def rate_of(meta: Table, column: str, number: int, rule: str) -> Rate:
+def rate_of(meta: ColumnTable, column: str, number: int, rule: str) -> Rate:
     """The frames a second of a recording, whose ``number`` is in ``column``. Raises ``InputError``."""
     if meta.rows != 1:
         raise InputError(f"{meta.path}: {meta.rows} rows; one recording has one row of meta data")
@@ -61,7 +61,7 @@ def cells_of(kinds: Mapping[str, Kind], ids: Collection[str], strict: bool) -> t
     return tuple(x for x, kind in kinds.items() if x not in ids and kind in ("integer", "number"))
 
 
-def vehicles_by_id(meta: Table, column: str) -> Table:
+def vehicles_by_id(meta: ColumnTable, column: str) -> ColumnTable:
     """The vehicles by their ids in ``column``, each once, with frames that fit. Raises ``InputError``."""
     order = np.argsort(meta[column], kind="stable")
     repeated = np.zeros(meta.rows, bool)
@@ -74,7 +74,7 @@ def vehicles_by_id(meta: Table, column: str) -> Table:
     return meta.at(order)
 
 
-def in_order(tracks: Table, column: str) -> tuple[Table, tuple[str, ...]]:
+def in_order(tracks: ColumnTable, column: str) -> tuple[ColumnTable, tuple[str, ...]]:
     """The samples by vehicle (``column``) and frame, each once, and a note where they had to be sorted.
 
     Raises ``InputError``.
@@ -100,15 +100,19 @@ def starts_of(ids: Integers) -> Integers:
 
 
 def _steps_within(ids: Integers, frames: Integers) -> Integers:
-    """By how much frames go on from row to row; 1 from one id to the next."""
+    """Return by how much frames go on from row to row; 1 from one id to the next."""
     steps: Integers = np.diff(frames)
     steps[starts_of(ids)[1:] - 1] = 1
     return steps
 
 
 def usable(
-    meta: Table, tracks: Table, column: str, strict: bool, check: Callable[[Table, Table], Integers]
-) -> tuple[Table, Table, Integers, tuple[str, ...]]:
+    meta: ColumnTable,
+    tracks: ColumnTable,
+    column: str,
+    strict: bool,
+    check: Callable[[ColumnTable, ColumnTable], Integers],
+) -> tuple[ColumnTable, ColumnTable, Integers, tuple[str, ...]]:
     """The tables, where each vehicle starts as ``check`` says, and notes on vehicles that they are without.
 
     Unless it is ``strict``, these are vehicles of which ``check`` refuses a cell; ``column`` has their ids.
@@ -126,7 +130,7 @@ def usable(
             table = known if error.path == meta.path else samples
             row = error.place if table.places is None else int(np.argmax(table.places == error.place))
             faults[int(table[column][row])] = error
-    notes = (left_out_note([vehicle], meta.rows, Why.TOLD(x.told)) for vehicle, x in faults.items())
+    notes = (left_out_note([vehicle], meta.rows, ReasonKind.TOLD(x.told)) for vehicle, x in faults.items())
     return known, samples, start, tuple(notes)
 
 
@@ -150,18 +154,18 @@ def without_bad(
     vehicles = len(np.unique(ids))
     if faults and (strict or len(faults) > MOST_LEFT_OUT * vehicles):
         raise next(iter(faults.values()))
-    notes = [left_out_note([vehicle], vehicles, Why.TOLD(x.told)) for vehicle, x in faults.items()]
+    notes = [left_out_note([vehicle], vehicles, ReasonKind.TOLD(x.told)) for vehicle, x in faults.items()]
     return ~np.isin(ids, [*faults]), notes
 
 
-def _without(table: Table, column: str, vehicles: Collection[int]) -> Table:
+def _without(table: ColumnTable, column: str, vehicles: Collection[int]) -> ColumnTable:
     if not vehicles:
         return table
     return table.at(np.flatnonzero(~np.isin(table[column], [*vehicles])))
 
 
-def match_vehicles(meta: Table, tracks: Table, column: str, least: int) -> Integers:
-    """Where each vehicle's samples start; both files must tell the same of vehicles and frames.
+def match_vehicles(meta: ColumnTable, tracks: ColumnTable, column: str, least: int) -> Integers:
+    """Return where each vehicle's samples start; both files must tell the same of vehicles and frames.
 
     ``column`` has the ids, of which ``least`` is the least that is one. Raises ``InputError``.
     """
@@ -181,14 +185,14 @@ def match_vehicles(meta: Table, tracks: Table, column: str, least: int) -> Integ
     if len(gaps):
         before, after = tracks["frame"][gaps[0]], tracks["frame"][gaps[0] + 1]
         vehicle = tracks[column][gaps[0]]
-        told = f"vehicle {column}={vehicle}, frame={after}: the frame before it is {before}"
+        message = f"vehicle {column}={vehicle}, frame={after}: the frame before it is {before}"
         place = tracks.place(int(gaps[0]) + 1)
-        raise CellError(tracks.path, f"{told}; the frames of a vehicle have no gaps", place)
-    for name, found in (("initialFrame", tracks["frame"][first]), ("numFrames", counts)):
-        wrong = np.flatnonzero(meta[name] != found)
+        raise CellError(tracks.path, f"{message}; the frames of a vehicle have no gaps", place)
+    for name, actual in (("initialFrame", tracks["frame"][first]), ("numFrames", counts)):
+        wrong = np.flatnonzero(meta[name] != actual)
         if len(wrong):
             k = wrong[0]
             where = f"vehicle {column}={meta[column][k]}, column {name}={meta[name][k]}"
-            told = f"{where}: {tracks.path.name} has {found[k]}; the files must agree"
-            raise CellError(meta.path, told, meta.place(int(k)))
+            message = f"{where}: {tracks.path.name} has {actual[k]}; the files must agree"
+            raise CellError(meta.path, message, meta.place(int(k)))
     return start

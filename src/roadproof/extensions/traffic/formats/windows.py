@@ -18,16 +18,16 @@ MOST_SAMPLES = 1_000_000
 
 
 @dataclass(frozen=True)
-class Window:
+class TimeWindow:
     """Vehicles of a recording, with an entry each that says whether they are ``new``: came in during it."""
 
     recording: Recording
     new: Bools
 
     def has(self, *vehicles: Integers) -> Bools:
-        """For pairs or triples of vehicle indices, whether the last of them came in during this window."""
-        found: Bools = np.logical_or.reduce([self.new[index] for index in vehicles])
-        return found
+        """Return for each pair or triple whether the last of them came in during this window."""
+        new_ones: Bools = np.logical_or.reduce([self.new[index] for index in vehicles])
+        return new_ones
 
 
 @dataclass(frozen=True)
@@ -36,17 +36,17 @@ class WindowedRecording:
 
     rate: Rate
     zone_names: tuple[Zone, ...]
-    windows: Callable[[], Iterator[Window]]
+    windows: Callable[[], Iterator[TimeWindow]]
 
 
 def undivided(recording: Recording) -> WindowedRecording:
     """All of a recording as one window."""
-    whole = Window(recording, np.ones(recording.vehicles, np.bool_))
+    whole = TimeWindow(recording, np.ones(recording.vehicles, np.bool_))
     return WindowedRecording(recording.rate, recording.zone_names, lambda: iter((whole,)))
 
 
 def divide(first_frame: Integers, last_frame: Integers, samples: int) -> Iterator[tuple[Bools, Bools]]:
-    """For each window which vehicles are in it, and which of these came in during it.
+    """Yield for each window which vehicles are in it, and which of these came in during it.
 
     A window has as many ``samples`` as it may, but the vehicles that come in at one frame are not divided.
     """

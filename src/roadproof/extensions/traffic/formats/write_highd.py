@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from roadproof.errors import InputError
-from roadproof.extensions.traffic.formats.highd import (
+from roadproof.extensions.traffic.formats.highd_columns import (
     RECORDING_COLUMNS,
     SAMPLE_COLUMNS,
     UPPER,

@@ -5,12 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from roadproof.frontends.report.cases import (
-    Case,
-    Location,
-    Rule,
-    State,
-)
+from roadproof.frontends.report.cases import Case, CaseRule, Location, State
 from roadproof.verdict import Verdict
 
 
@@ -24,14 +19,14 @@ def recording_cases(
     for name in names:
         reason = failed.get(name, "")
         state: State = "undecided" if name in lost else "skipped" if reason else "passed"
-        rule = Verdict.UNKNOWN if name in lost else Rule.UNREADABLE
+        rule = Verdict.UNKNOWN if name in lost else CaseRule.UNREADABLE
         yield Case(
             suite="recordings",
             name=name,
             state=state,
             rule=rule,
             message=reason,
-            place=_recording_file(path, name),
+            place=_recording_location(path, name),
         )
     for line in broken:
         yield Case(
@@ -44,6 +39,6 @@ def recording_cases(
         )
 
 
-def _recording_file(path: Path, name: str) -> Location:
-    found = sorted(path.glob(f"{name}*")) if path.is_dir() else []
-    return Location(str(found[0] if found else path))
+def _recording_location(path: Path, name: str) -> Location:
+    files = sorted(path.glob(f"{name}*")) if path.is_dir() else []
+    return Location(str(files[0] if files else path))

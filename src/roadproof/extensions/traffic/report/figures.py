@@ -6,8 +6,8 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
-from roadproof.extensions.traffic.evaluate.results import decimal, words_in
-from roadproof.extensions.traffic.evaluate.totals import Row, Totals
+from roadproof.extensions.traffic.evaluate.results import decimal, scenario_words
+from roadproof.extensions.traffic.evaluate.totals import ResultsRow, Totals
 from roadproof.extensions.traffic.report.research_questions import answer_questions
 from roadproof.extensions.traffic.report.tables import LOOKS
 from roadproof.extensions.traffic.report.traffic import (
@@ -20,8 +20,8 @@ from roadproof.extensions.traffic.report.traffic import (
     results_tables,
 )
 from roadproof.frontends.report.figures import as_bytes, count_axis, hide_frame, legend_beside, make_figure
-from roadproof.library.words import Called
-from roadproof.runtime.files import cannot_write, write_whole
+from roadproof.library.words import ScenarioWords
+from roadproof.runtime.files import cannot_write, write_atomic
 
 COLOURS = ("#9db8d9", "#4f7fb8", "#1f4a80", "#e0b990", "#c8783c", "#8a4a1c", "#8fb884", "#4b8b3b", "#2b5a20")
 BAR, GREY, BOUNDS = "#9db8d9", "#555555", "#c8783c"
@@ -29,7 +29,7 @@ BAR, GREY, BOUNDS = "#9db8d9", "#555555", "#c8783c"
 
 def draw_figures(totals: Totals) -> Iterator[tuple[str, Any]]:
     """The figures of each sector, by name. Raises ``MissingSolverError`` without matplotlib."""
-    shown, words = totals.shown, words_in(totals.settings)
+    shown, words = totals.shown, scenario_words(totals.settings)
     for sector, rows in shown.items():
         end, where = ending_of(totals, sector), f" ({sector})" if len(shown) > 1 else ""
         yield f"recall{end}", _recall(rows, where)
@@ -37,17 +37,17 @@ def draw_figures(totals: Totals) -> Iterator[tuple[str, Any]]:
         yield f"overlaps{end}", _overlaps(rows, totals.settings.min_danger[0], where, words)
 
 
-def _label(row: Row) -> str:
+def _label(row: ResultsRow) -> str:
     return f"{row.set_name}, minDanger {decimal(row.min_danger)}"
 
 
-def _recall(rows: Sequence[Row], where: str) -> Any:
+def _recall(rows: Sequence[ResultsRow], where: str) -> Any:
     """A bar for each row of a results table; a mark where the paper's recall is."""
     figure, (axes,) = make_figure([0.5 + 0.4 * len(rows)], width=8.5)
     for place, row in enumerate(rows):
         axes.barh(place, 100 * (row.recall or 0.0), color=BAR, height=0.7)
-        said = f"{100 * (row.recall or 0.0):.1f} % of {row.traces}" if row.traces else "no traces"
-        axes.text(1, place, said, va="center", fontsize=7)
+        text = f"{100 * (row.recall or 0.0):.1f} % of {row.traces}" if row.traces else "no traces"
+        axes.text(1, place, text, va="center", fontsize=7)
         if is_bounded(row):
             axes.plot([100 * x / row.traces for x in row.bounds], [place, place], color=BOUNDS, lw=3)
         known = paper_row(row)
@@ -69,8 +69,8 @@ def _recall(rows: Sequence[Row], where: str) -> Any:
     return figure
 
 
-def _scenarios(rows: Sequence[Row], where: str, words: Called) -> Any:
-    """For each scenario a group of bars, one a row of the results table."""
+def _scenarios(rows: Sequence[ResultsRow], where: str, words: ScenarioWords) -> Any:
+    """Return a chart with a group of bars for each scenario, one bar a row of the results table."""
     scenarios = rows[0].sector.scenarios
     figure, (axes,) = make_figure([3.4], width=max(6.0, 2.2 + 0.9 * len(scenarios)))
     share = 0.8 / len(rows)
@@ -88,8 +88,8 @@ def _scenarios(rows: Sequence[Row], where: str, words: Called) -> Any:
     return figure
 
 
-def _overlaps(rows: Sequence[Row], min_danger: Fraction, where: str, words: Called) -> Any:
-    """For each set, under one minDanger, how many traces match two scenarios at once."""
+def _overlaps(rows: Sequence[ResultsRow], min_danger: Fraction, where: str, words: ScenarioWords) -> Any:
+    """Return a chart of how many traces match two scenarios at once, for each set, under one minDanger."""
     chosen = [row for row in rows if row.min_danger == min_danger]
     scenarios = rows[0].sector.scenarios
     figure, axes = make_figure([0.7 + 0.34 * len(scenarios)] * len(chosen), width=7.0)
@@ -102,7 +102,7 @@ def _overlaps(rows: Sequence[Row], min_danger: Fraction, where: str, words: Call
     return figure
 
 
-def _draw_matrix(axes: Any, row: Row, scenarios: Sequence[int], words: Called) -> Any:
+def _draw_matrix(axes: Any, row: ResultsRow, scenarios: Sequence[int], words: ScenarioWords) -> Any:
     """Counts of pairs below the diagonal, of single scenarios on it; shaded by share of the rarer one."""
     nothing = float("nan")
 
@@ -145,12 +145,12 @@ def write_report(folder: Path, totals: Totals, failed: Mapping[str, str], pictur
             if table is None:  # an earlier run may have had one
                 (folder / f"{name}.{ending}").unlink(missing_ok=True)
             else:
-                write_whole(folder / f"{name}.{ending}", look(table).encode())
-    write_whole(folder / "answers.md", answer_questions(totals, failed).encode())
+                write_atomic(folder / f"{name}.{ending}", look(table).encode())
+    write_atomic(folder / "answers.md", answer_questions(totals, failed).encode())
     if pictures:
         for name, figure in draw_figures(totals):
             for ending, content in as_bytes(figure).items():
-                write_whole(folder / "figures" / f"{name}.{ending}", content)
+                write_atomic(folder / "figures" / f"{name}.{ending}", content)
 
 
 def remove_report(folder: Path) -> None:

@@ -1,29 +1,29 @@
-"""What a formula is on one trace: a few lines, and strips that show when each part of it is true."""
+"""The result of a formula on one trace as text, and as strips that show when each part is true."""
 
 from textwrap import wrap
 from typing import Any
 
-from roadproof.extensions.traffic.evaluate.observed import FirstAnswer
+from roadproof.extensions.traffic.evaluate.observed import MonitorResult
 from roadproof.frontends.report.figures import legend_beside, make_figure, name_rows
 from roadproof.frontends.report.sheet import excerpt
 
 _TRUE, _UNDECIDED, _WIDEST = "#4b8b3b", "#bbbbbb", 60
 
 
-def as_text(observed: FirstAnswer) -> str:
+def as_text(observed: MonitorResult) -> str:
     """Verdict, how it is meant, and a line for each part."""
     lines = [f"{observed.formula}: {observed.verdict}", f"  {_promise(observed)}", f"  {_margin(observed)}"]
     lines.append("when true, in seconds from the start:")
     width = min(48, max(len(strip.name) for strip in observed.strips))
     for strip in observed.strips:
-        told = strip.exact or " ∪ ".join(map(_interval, strip.true)) or "never"
+        spans = strip.exact or " ∪ ".join(map(_interval, strip.true)) or "never"
         if strip.undecided:
-            told += "; undecided " + " ∪ ".join(map(_interval, strip.undecided))
-        lines.append(f"  {strip.name:<{width}}  {told}")
+            spans += "; undecided " + " ∪ ".join(map(_interval, strip.undecided))
+        lines.append(f"  {strip.name:<{width}}  {spans}")
     return "\n".join(lines)
 
 
-def _promise(observed: FirstAnswer) -> str:
+def _promise(observed: MonitorResult) -> str:
     if observed.view == "dense":
         return "view: dense, every instant of an unbounded drive, judged exactly"
     other = "clip" if observed.convention == "truncated" else "truncated"
@@ -33,7 +33,7 @@ def _promise(observed: FirstAnswer) -> str:
     )
 
 
-def _margin(observed: FirstAnswer) -> str:
+def _margin(observed: MonitorResult) -> str:
     low, high = observed.margin
     grid = f", on a grid of {float(observed.dt):g} s" if observed.view == "dense" else ""
     whether = "" if observed.decides else "; it does not decide"
@@ -47,7 +47,7 @@ def _interval(span: tuple[float, float]) -> str:
     return f"{{{begin:g}}}" if begin == end else f"[{begin:g}, {end:g}]"
 
 
-def draw_strips(observed: FirstAnswer) -> Any:
+def draw_strips(observed: MonitorResult) -> Any:
     """A strip a part, each below what it is part of: green where it is true, grey where undecided."""
     strips = observed.strips
     figure, (axes,) = make_figure([0.6 + 0.2 * len(strips)])

@@ -1,4 +1,4 @@
-"""What the numbers of a traffic evaluation say about the paper's research questions, in a short text.
+"""A short text that answers the paper's research questions from the numbers of an evaluation.
 
 Every sentence is made from counts of this run; where the data cannot answer, the text says so.
 """
@@ -6,8 +6,8 @@ Every sentence is made from counts of this run; where the data cannot answer, th
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
-from roadproof.extensions.traffic.evaluate.results import decimal, words_in
-from roadproof.extensions.traffic.evaluate.totals import Row, Totals
+from roadproof.extensions.traffic.evaluate.results import decimal, scenario_words
+from roadproof.extensions.traffic.evaluate.totals import ResultsRow, Totals
 from roadproof.extensions.traffic.report.traffic import (
     COMPARISON,
     KINDS,
@@ -24,7 +24,7 @@ from roadproof.extensions.traffic.report.traffic import (
     rss_row,
     traces_of,
 )
-from roadproof.library.scenarios import DETECTORS
+from roadproof.extensions.traffic.scenario_parts import DETECTORS
 
 
 def answer_questions(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> str:
@@ -48,13 +48,13 @@ def _listed(lines: Iterable[str]) -> str:
     return "\n".join(f"- {line}" for line in lines)
 
 
-def _shown(row: Row) -> str:
+def _shown(row: ResultsRow) -> str:
     known = paper_row(row)
     theirs = f" [{known.recall}]" if known else ""
     return f"{row.set_name} {_share(row, theirs)}"
 
 
-def _share(row: Row, theirs: str = "") -> str:
+def _share(row: ResultsRow, theirs: str = "") -> str:
     """The recall of a row with its counts and bounds."""
     share = Share(row.matching, row.traces, traces_of(row))
     return f"{share.percent}{theirs} ({share.count}{_within(row.bounds, row.matching, row.traces)})"
@@ -65,14 +65,14 @@ def _within(bounds: tuple[int, int], matching: int, whole: int) -> str:
     return "" if bounds == (matching, matching) else f"; {interval(bounds, whole)} within errors of places"
 
 
-def _missed(row: Row) -> str:
-    """How many traces of a row match no scenario of two vehicles."""
+def _without_match(row: ResultsRow) -> str:
+    """Return how many traces of a row match no scenario of two vehicles."""
     share = Share(row.traces - row.matching, row.traces, traces_of(row))
     may = f", but {row.possible} of these may, as places are off" if row.possible else ""
     return f"{share.count} match no scenario of {row.set_name} with two vehicles{may}."
 
 
-def _of_danger(totals: Totals) -> Iterator[tuple[str, list[Row]]]:
+def _of_danger(totals: Totals) -> Iterator[tuple[str, list[ResultsRow]]]:
     for value in totals.settings.min_danger:
         yield decimal(value), [row for row in totals.rows if row.min_danger == value]
 
@@ -83,11 +83,11 @@ def _detecting(totals: Totals) -> str:
     lines = []
     for value, rows in _of_danger(totals):
         lines.append(f"minDanger {value}: recall " + ", ".join(map(_shown, rows)) + ".")
-        lines.append(f"minDanger {value}: {_missed(rows[-1])}")
+        lines.append(f"minDanger {value}: {_without_match(rows[-1])}")
     return _listed(lines)
 
 
-def _together(row: Row) -> Iterator[tuple[tuple[int, int], int]]:
+def _together(row: ResultsRow) -> Iterator[tuple[tuple[int, int], int]]:
     """All combinations of two scenarios that some trace matches, the most frequent first."""
     yield from sorted(row.together.items(), key=lambda item: (-item[1], item[0]))
 
@@ -100,11 +100,13 @@ def _classifying(totals: Totals) -> str:
                 continue
             several = ", ".join(f"{i}-{j} {n}" for (i, j), n in _together(row))
             matching = f"traces that match a scenario of the {row.sector}"
-            said = f"{Share(row.several, row.matching_with_three, matching).count} match several"
-            lines.append(f"minDanger {value}, {row.set_name}: {said}" + (f"; {several}." if several else "."))
+            share = f"{Share(row.several, row.matching_with_three, matching).count} match several"
+            lines.append(
+                f"minDanger {value}, {row.set_name}: {share}" + (f"; {several}." if several else ".")
+            )
     if not lines:
         return "No trace matches, so these recordings cannot tell."
-    named = (f"{number} {x.title}" for number, x in words_in(totals.settings).items() if x.title)
+    named = (f"{number} {x.title}" for number, x in scenario_words(totals.settings).items() if x.title)
     return _listed(lines) + f"\n\nScenarios: {'; '.join(named)}."
 
 
@@ -151,13 +153,13 @@ def _earlier(totals: Totals) -> str:
         return "The detectors of earlier works or the set ext were not asked for."
     lines = [f"Detectors count pairs of whole recordings, scenarios count {traces_of(row)}."]
     for kind, number in KINDS.items():
-        found = ", ".join(
+        detected = ", ".join(
             f"{metric} {totals.detected[DETECTORS[kind][metric]]} [{COMPARISON[kind][metric]}]"
             for metric in METRICS
         )
         ours = f"{row.scenarios[number]} [{COMPARISON[kind]['RSS']}]"
-        title = words_in(totals.settings)[number].title
-        lines.append(f"{kind}: {found}; scenario {number} of ext{title and f' ({title})'} {ours}.")
+        title = scenario_words(totals.settings)[number].title
+        lines.append(f"{kind}: {detected}; scenario {number} of ext{title and f' ({title})'} {ours}.")
     return _listed(lines)
 
 
@@ -171,11 +173,11 @@ def _other_sectors(totals: Totals) -> Iterator[str]:
         for name, rows in others:
             here = [row for row in rows if row.min_danger == value]
             lines.append(f"{name}, minDanger {decimal(value)}: recall {', '.join(map(_shown, here))}.")
-            lines.append(f"{name}, minDanger {decimal(value)}: {_missed(here[-1])}")
+            lines.append(f"{name}, minDanger {decimal(value)}: {_without_match(here[-1])}")
         last, traces = totals.settings.sets[-1], totals.traces[k]
-        missed = Share(traces - totals.matching[k, last], traces, "traces in all road sectors")
+        unmatched = Share(traces - totals.matching[k, last], traces, "traces in all road sectors")
         lines.append(
-            f"all road sectors, minDanger {decimal(value)}: {missed.count} match no scenario of {last} "
+            f"all road sectors, minDanger {decimal(value)}: {unmatched.count} match no scenario of {last} "
             "with two vehicles."
         )
     about = f"RQ1, RQ2, RQ4 and RQ5 are about the {first[0]}."

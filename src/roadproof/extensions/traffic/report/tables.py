@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Mapping
 
-from roadproof.frontends.report.sheet import aligned, csv_text
+from roadproof.frontends.report.csv_table import csv_text
+from roadproof.frontends.report.sheet import aligned
 from roadproof.runtime.records import dataclass
 
 _LATEX = str.maketrans(
@@ -25,7 +26,7 @@ _LATEX = str.maketrans(
 
 
 @dataclass(frozen=True)
-class Table:
+class ReportTable:
     """Cells as they are to be read; ``notes`` stand below. Every row has as many cells as ``columns``."""
 
     title: str
@@ -39,14 +40,14 @@ class Table:
             raise ValueError(f"a row of {len(wrong[0])} cells in a table of {len(self.columns)} columns")
 
 
-def as_text(table: Table) -> str:
+def as_text(table: ReportTable) -> str:
     """Columns aligned by spaces: texts to the left, numbers to the right."""
     rule = ["-" * max(map(len, column)) for column in zip(table.columns, *table.rows, strict=True)]
     body = aligned([table.columns, rule, *table.rows], _numeric(table))
     return "\n".join([table.title, "", *body, *_below(table)]) + "\n"
 
 
-def as_markdown(table: Table) -> str:
+def as_markdown(table: ReportTable) -> str:
     """A table of GitHub's Markdown with the title as heading."""
 
     def line(cells: tuple[str, ...]) -> str:
@@ -57,12 +58,12 @@ def as_markdown(table: Table) -> str:
     return "\n".join([f"## {table.title}", "", *body, *_below(table)]) + "\n"
 
 
-def as_csv(table: Table) -> str:
+def as_csv(table: ReportTable) -> str:
     """Header and rows; title and notes are left out, so that programs can read it."""
     return csv_text(table.columns, table.rows)
 
 
-def as_latex(table: Table) -> str:
+def as_latex(table: ReportTable) -> str:
     """A ``table*`` with booktabs rules, notes in the caption."""
 
     def line(cells: tuple[str, ...]) -> str:
@@ -87,7 +88,7 @@ def as_latex(table: Table) -> str:
     )
 
 
-LOOKS: Mapping[str, Callable[[Table], str]] = {
+LOOKS: Mapping[str, Callable[[ReportTable], str]] = {
     "txt": as_text,
     "md": as_markdown,
     "csv": as_csv,
@@ -96,8 +97,8 @@ LOOKS: Mapping[str, Callable[[Table], str]] = {
 """How to write a table, by the ending of the file."""
 
 
-def _numeric(table: Table) -> list[bool]:
-    """Which columns hold nothing but numbers, percentages and gaps."""
+def _numeric(table: ReportTable) -> list[bool]:
+    """Return which columns hold nothing but numbers, percentages and gaps."""
     columns = list(zip(*table.rows, strict=True)) or [()] * len(table.columns)
     return [bool(cells) and all(_is_number(cell) for cell in cells) for cells in columns]
 
@@ -106,7 +107,7 @@ def _is_number(cell: str) -> bool:
     return cell in ("", "-") or cell.removesuffix("%").strip().replace(".", "", 1).isdecimal()
 
 
-def _below(table: Table) -> list[str]:
+def _below(table: ReportTable) -> list[str]:
     return ["", *table.notes] if table.notes else []
 
 

@@ -12,12 +12,12 @@ from types import MappingProxyType
 
 from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.traffic.evaluate.foretelling import LABELS
-from roadproof.extensions.traffic.evaluate.results import decimal, foretold_rows, words_in
+from roadproof.extensions.traffic.evaluate.results import decimal, driver_label_rows, scenario_words
 from roadproof.extensions.traffic.evaluate.sectors import ANYWHERE
-from roadproof.extensions.traffic.evaluate.totals import Row, Totals
-from roadproof.extensions.traffic.report.tables import Table
-from roadproof.library.scenarios import DETECTORS, Metric
-from roadproof.library.words import Called
+from roadproof.extensions.traffic.evaluate.totals import ResultsRow, Totals
+from roadproof.extensions.traffic.report.tables import ReportTable
+from roadproof.extensions.traffic.scenario_parts import DETECTORS, Metric
+from roadproof.library.words import ScenarioWords
 from roadproof.runtime.records import dataclass
 
 
@@ -72,7 +72,7 @@ KINDS = {"cut-in": 1, "deceleration": 4}
 """What detectors detect, and the scenario that stands beside them (paper, RQ5)."""
 
 
-def results_tables(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> dict[str, Table]:
+def results_tables(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> dict[str, ReportTable]:
     """The paper's results table, one for each road sector that the recordings have, by names for files.
 
     For each minDanger and set there is a row of ours and, where the paper has one, a row of the paper's.
@@ -86,7 +86,7 @@ def results_tables(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> d
 
 
 def ending_of(totals: Totals, sector: str) -> str:
-    """What the names of files about a sector end in: nothing for the first one.
+    """Return the ending of the names of a sector's files; empty for the first sector.
 
     Words of a specification become part of a file's name, so other signs than letters and digits go.
     """
@@ -94,25 +94,27 @@ def ending_of(totals: Totals, sector: str) -> str:
     return "" if sector == first else "-" + re.sub(r"[^a-z0-9]+", "-", sector.lower()).strip("-")
 
 
-def _results_table(totals: Totals, where: str, rows: Sequence[Row], failed: Mapping[str, str]) -> Table:
+def _results_table(
+    totals: Totals, where: str, rows: Sequence[ResultsRow], failed: Mapping[str, str]
+) -> ReportTable:
     scenarios = rows[0].sector.scenarios
     bounded = any(is_bounded(x) for x in rows)
     recall = ("recall", WITHIN) if bounded else ("recall",)
     columns = ("minDanger", "set", "data", "traces", "matching", *recall, *(f"s{i}" for i in scenarios))
     three = rows[0].sector.of_three
-    return Table(
+    return ReportTable(
         "Disturbance traces that match a scenario" + (f": {where}" if where else ""),
         columns,
         tuple(_result_rows(rows, bounded)),
         (
-            *_names(scenarios, words_in(totals.settings)),
+            *_names(scenarios, scenario_words(totals.settings)),
             f"{OURS}: {_data(totals)}",
-            *_papers(rows),
+            *_note_on_paper(rows),
             "A trace is an unordered pair of vehicles, matched when one of its two role assignments is; "
             "matching and recall are by scenarios of two cars, as in the paper."
             + "".join(f" s{i} counts pairs (SV, POV2)." for i in three),
             *_uncertain(rows),
-            *_elsewhere(totals, where),
+            *_notes_on_sectors(totals, where),
             _convention(totals),
             *_warnings(failed),
             *_repeats(totals),
@@ -121,8 +123,8 @@ def _results_table(totals: Totals, where: str, rows: Sequence[Row], failed: Mapp
     )
 
 
-def is_bounded(row: Row) -> bool:
-    """Whether errors of places decide whether some traces of a row match."""
+def is_bounded(row: ResultsRow) -> bool:
+    """Return whether errors of places decide whether some traces of a row match."""
     return bool(row.uncertain or row.possible)
 
 
@@ -136,8 +138,8 @@ def interval(bounds: tuple[int, int], whole: int) -> str:
     return f"{percent(low, whole).removesuffix('%')} to {percent(high, whole)}" if whole else "-"
 
 
-def _uncertain(rows: Sequence[Row]) -> Iterator[str]:
-    """How many traces match, or do not, by less than places may be off, where some do."""
+def _uncertain(rows: Sequence[ResultsRow]) -> Iterator[str]:
+    """Return how many traces match, or do not, by less than places may be off, where some do."""
     shares = [
         f"{decimal(x.min_danger)}, {x.set_name}: {x.uncertain} of {x.matching} that match and {x.possible} "
         f"of {x.traces - x.matching} others"
@@ -149,19 +151,19 @@ def _uncertain(rows: Sequence[Row]) -> Iterator[str]:
         yield f"Traces for which these errors decide: {'; '.join(shares)}."
 
 
-def _names(scenarios: Sequence[int], words: Called) -> Iterator[str]:
-    """What the columns of a table are called, some to a line."""
+def _names(scenarios: Sequence[int], words: ScenarioWords) -> Iterator[str]:
+    """Yield the titles of the scenario columns of a table, some to a line."""
     named = [f"s{i} {words[i].title}" for i in scenarios if words[i].title]
     yield from ("; ".join(named[k : k + NAMES]) for k in range(0, len(named), NAMES))
 
 
-def _papers(rows: Sequence[Row]) -> Iterator[str]:
+def _note_on_paper(rows: Sequence[ResultsRow]) -> Iterator[str]:
     if any(paper_row(row) is not None for row in rows):
         yield f"{PAPER}: {MARK}; a comparison of methods, not of the same traffic."
 
 
-def drivers_table(totals: Totals) -> Table | None:
-    """What driver models say of the matches; None where none were asked for."""
+def drivers_table(totals: Totals) -> ReportTable | None:
+    """Return the table of driver labels of the matches; None without driver models."""
     if not totals.settings.drivers:
         return None
     rows = [
@@ -169,29 +171,29 @@ def drivers_table(totals: Totals) -> Table | None:
             *(decimal(Fraction(x.min_danger)), x.set, f"s{x.scenario}", x.driver),
             *map(str, (x.preventable, x.unpreventable, x.undecided, x.not_foreseen)),
         )
-        for x in foretold_rows(totals)
+        for x in driver_label_rows(totals)
     ]
-    said = [f"{name}: {MODELS[name].title} ({MODELS[name].source})" for name in totals.settings.drivers]
-    return Table(
+    models = [f"{name}: {MODELS[name].title} ({MODELS[name].source})" for name in totals.settings.drivers]
+    return ReportTable(
         "Matches by whether a driver model prevents a collision in place of SV",
         ("minDanger", "set", "scenario", "model", *LABELS),
         tuple(rows),
         (
-            "; ".join(said) + ".",
+            "; ".join(models) + ".",
             "Rows of matches.csv, so a pair may count in both roles. All but SV moves as recorded, and after "
             "the last common frame straight on; undecided: SV passes POV. Floating point, no evidence.",
         ),
     )
 
 
-def paper_row(row: Row) -> PaperRow | None:
-    """What the paper reports of the same; None where it is about other scenarios or parameters."""
+def paper_row(row: ResultsRow) -> PaperRow | None:
+    """Return the paper's row for this row; None where it is about other scenarios or parameters."""
     known = RESULTS.get((row.min_danger, row.set_name))
     return known if known is not None and {*known.scenarios} & {*row.sector.scenarios} else None
 
 
-def _elsewhere(totals: Totals, where: str) -> Iterator[str]:
-    """What is not in a table: traces that begin in other sectors, and sectors that no road has."""
+def _notes_on_sectors(totals: Totals, where: str) -> Iterator[str]:
+    """Yield notes on traces and sectors that a table leaves out."""
     if where:
         yield f"Traces that begin in this road sector ({where}); those of the others are in their own tables."
     absent = [name for name in totals.tables if name not in totals.met]
@@ -204,7 +206,7 @@ def _numbered(numbers: Sequence[int]) -> str:
     return f"s{numbers[0]}" if len(numbers) == 1 else f"s{numbers[0]} to s{numbers[-1]}"
 
 
-def _result_rows(rows: Sequence[Row], bounded: bool) -> Iterator[tuple[str, ...]]:
+def _result_rows(rows: Sequence[ResultsRow], bounded: bool) -> Iterator[tuple[str, ...]]:
     for row in rows:
         scenarios = row.sector.scenarios
         head = (decimal(row.min_danger), row.set_name)
@@ -219,22 +221,22 @@ def _result_rows(rows: Sequence[Row], bounded: bool) -> Iterator[tuple[str, ...]
             yield (*head, PAPER, *figures, *theirs)
 
 
-def comparison_table(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> Table | None:
+def comparison_table(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> ReportTable | None:
     """The paper's comparison table; None where the detectors or the set ext were not asked for."""
     ours = rss_row(totals)
-    wanted = {name for detectors in DETECTORS.values() for name in detectors.values()}
+    detectors_needed = {name for detectors in DETECTORS.values() for name in detectors.values()}
     scenarios = set(KINDS.values())
     if ours is None or not (
-        wanted <= set(totals.settings.detectors) and scenarios <= set(totals.settings.scenarios)
+        detectors_needed <= set(totals.settings.detectors) and scenarios <= set(totals.settings.scenarios)
     ):
         return None
     rows: list[tuple[str, ...]] = []
     for kind, number in KINDS.items():
-        found = (str(totals.detected[DETECTORS[kind][metric]]) for metric in METRICS)
-        rows.append((kind, OURS, *found, str(ours.scenarios[number])))
+        detected = (str(totals.detected[DETECTORS[kind][metric]]) for metric in METRICS)
+        rows.append((kind, OURS, *detected, str(ours.scenarios[number])))
         rows.append((kind, PAPER, *(str(COMPARISON[kind][x]) for x in (*METRICS, "RSS"))))
     limits = ", ".join(f"{name} = {decimal(totals.settings.values[name])}" for name in _thresholds(totals))
-    return Table(
+    return ReportTable(
         "Cut-ins and decelerations by earlier definitions and by ISO 34502",
         ("kind", "data", *METRICS, f"RSS ({ours.set_name}, minDanger {decimal(ours.min_danger)})"),
         tuple(rows),
@@ -271,8 +273,8 @@ def _notes(totals: Totals) -> tuple[str, ...]:
     count = sum(map(len, totals.notes.values()))
     if not count:
         return ()
-    said = "is 1 note" if count == 1 else f"are {count} notes"
-    return (f"There {said} on {len(totals.notes)} recordings: what is odd there is in results.json.",)
+    counted = "is 1 note" if count == 1 else f"are {count} notes"
+    return (f"There {counted} on {len(totals.notes)} recordings: what is odd there is in results.json.",)
 
 
 def _thresholds(totals: Totals) -> tuple[str, ...]:
@@ -280,7 +282,7 @@ def _thresholds(totals: Totals) -> tuple[str, ...]:
     return tuple(name for name in names if name in totals.settings.values)
 
 
-def rss_row(totals: Totals) -> Row | None:
+def rss_row(totals: Totals) -> ResultsRow | None:
     """The row of ext with the smallest minDanger, which the paper compares with earlier works."""
     beside = {*KINDS.values()}
     rows = [x for each in totals.tables.values() for x in each if beside <= {*x.sector.scenarios}]
@@ -327,7 +329,7 @@ class Share:
 
     @property
     def percent(self) -> str:
-        """With one decimal; ``-`` of nothing."""
+        """The share in per cent with one decimal; ``-`` where the whole is 0."""
         return percent(self.part, self.whole)
 
     @property
@@ -339,7 +341,7 @@ class Share:
         return f"{self.percent} ({self.count})"
 
 
-def traces_of(row: Row) -> str:
+def traces_of(row: ResultsRow) -> str:
     """The population of a row: traces that begin in its road sector."""
     return f"traces{_place(row.sector.name)}"
 
@@ -351,7 +353,7 @@ def _place(sector: str) -> str:
 
 
 def percent(part: int, whole: int) -> str:
-    """With one decimal, ``-`` of nothing.
+    """Return the share in per cent with one decimal; ``-`` where ``whole`` is 0.
 
     >>> percent(1, 3), percent(1, 0)
     ('33.3%', '-')

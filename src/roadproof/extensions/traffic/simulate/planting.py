@@ -14,12 +14,13 @@ import numpy as np
 
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.extensions.traffic import scenario_parts
 from roadproof.extensions.traffic.evaluate.one_trace import OneTrace, cut_trace
 from roadproof.extensions.traffic.evaluate.recheck import trace_of
 from roadproof.extensions.traffic.evaluate.recursive import TraceReader
 from roadproof.extensions.traffic.evaluate.results import MATCH_COLUMNS
 from roadproof.extensions.traffic.formats.clock import Rate
-from roadproof.extensions.traffic.formats.highd import LOWER, UPPER
+from roadproof.extensions.traffic.formats.highd_columns import LOWER, UPPER
 from roadproof.extensions.traffic.formats.recording import (
     Bools,
     Column,
@@ -28,12 +29,12 @@ from roadproof.extensions.traffic.formats.recording import (
     join_vehicles,
     keep_vehicles,
 )
-from roadproof.extensions.traffic.formats.straight import StraightRoad, record
+from roadproof.extensions.traffic.formats.straight import StraightRoad, place_recording
 from roadproof.library import scenarios
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.roles import vehicle_order
-from roadproof.library.scenario_references import own_names
+from roadproof.library.scenario_references import vehicles_by_role
 from roadproof.library.specification import Library
 from roadproof.library.words import words_of
 from roadproof.semantics.sampled.batch import steps_of
@@ -43,8 +44,8 @@ from roadproof.world.signals import RECORDED, SIZES
 
 
 @dataclass(frozen=True)
-class Place:
-    """Where a drive goes: its time 0 is at ``start_frame``, its (0, 0) at (``s``, ``d``) of the recording.
+class PlantingPlace:
+    """A place for a drive: its time 0 is at ``start_frame``, its (0, 0) at (``s``, ``d``) of the recording.
 
     ``seconds`` of the drive are planted; vehicles that come nearer to it than ``clear_along`` and
     ``clear_across`` (m, between boxes) are taken out of the recording.
@@ -70,7 +71,7 @@ class PlantedDrive:
     removed: tuple[int, ...]
 
 
-def plant(recording: Recording, drive: Drive, place: Place) -> tuple[Recording, PlantedDrive]:
+def plant(recording: Recording, drive: Drive, place: PlantingPlace) -> tuple[Recording, PlantedDrive]:
     """``recording`` with ``drive`` in it, sampled exactly and rounded to hundredths, and who is who.
 
     The drive's vehicles are cars that are seen in the same frames, from its time 0 on, so that the
@@ -90,7 +91,7 @@ def plant(recording: Recording, drive: Drive, place: Place) -> tuple[Recording, 
         **{x: np.array([round(float(getattr(drive.vehicles[n], x)), 2) for n in names]) for x in SIZES},
         "first_frame": np.full(len(names), place.start_frame),
     }
-    guests = record(
+    guests = place_recording(
         StraightRoad(recording.lanes, recording.beside, ()),
         recording.name,
         recording.rate,
@@ -106,7 +107,7 @@ def plant(recording: Recording, drive: Drive, place: Place) -> tuple[Recording, 
     return merged, PlantedDrive(recording.name, who, place.start_frame, last, removed)
 
 
-def _sample(drive: Drive, name: str, frames: int, place: Place, rate: Rate) -> list[Floats]:
+def _sample(drive: Drive, name: str, frames: int, place: PlantingPlace, rate: Rate) -> list[Floats]:
     motion = drive.vehicles[name]
     states = states_at(motion, (k / Fraction(rate) for k in range(frames)))
     shifts = {"s": place.s, "d": place.d}
@@ -116,7 +117,7 @@ def _sample(drive: Drive, name: str, frames: int, place: Place, rate: Rate) -> l
     ]
 
 
-def _check_time(recording: Recording, place: Place, last: int) -> None:
+def _check_time(recording: Recording, place: PlantingPlace, last: int) -> None:
     first, end = int(recording.first_frame.min()), int(recording.last_frame.max())
     if not (place.seconds > 0 and first <= place.start_frame and last <= end):
         raise UsageError(
@@ -143,20 +144,20 @@ def _check_section(recording: Recording, guests: Recording, names: list[str]) ->
 
 
 def _section(recording: Recording, way: int) -> tuple[float, float]:
-    """From where to where (m) the vehicles of a direction are seen."""
+    """Return the ends (m) of the section on which the vehicles of a direction are seen."""
     ours = np.repeat(recording.direction == way, np.diff(recording.start))
     rear = recording.s - recording.length[recording.row_vehicle]
     return float(rear[ours].min()), float(recording.s[ours].max())
 
 
-def _in_the_way(recording: Recording, guests: Recording, place: Place) -> Bools:
-    """Which vehicles of the recording come too near to a guest at any time."""
+def _in_the_way(recording: Recording, guests: Recording, place: PlantingPlace) -> Bools:
+    """Return which vehicles of the recording come too near to a guest at any time."""
     vehicle, frame = recording.row_vehicle, recording.row_frame
     first, counts = place.start_frame, int(guests.start[1])
     rows = np.flatnonzero(
         (recording.direction[vehicle] == place.direction) & (frame >= first) & (frame < first + counts)
     )
-    found = np.zeros(recording.vehicles, bool)
+    in_the_way = np.zeros(recording.vehicles, bool)
     who, when = vehicle[rows], frame[rows] - first
     for k in range(guests.vehicles):
         at = guests.start[k] + when
@@ -167,8 +168,8 @@ def _in_the_way(recording: Recording, guests: Recording, place: Place) -> Bools:
         ):
             near &= mine[rows] > theirs[at] - own - margin
             near &= mine[rows] - size[who] < theirs[at] + margin
-        found[who[near]] = True
-    return found
+        in_the_way[who[near]] = True
+    return in_the_way
 
 
 PLANTED_COLUMNS = MATCH_COLUMNS[:-1]
@@ -177,7 +178,7 @@ PAUSE = 50
 
 
 @dataclass(frozen=True)
-class Truth:
+class PlantedRow:
     """One row of planted.csv, in the terms of matches.csv."""
 
     recording: str
@@ -203,7 +204,7 @@ def lane_width(files: Iterable[DriveFile]) -> float:
 
 
 def plantable(file: DriveFile) -> str:
-    """Why a drive cannot be planted on a straight main road; "" if it can be tried."""
+    """Return why a drive cannot be planted on a straight main road; "" if it can be tried."""
     if file.scenario is None:
         return "it is a drive of no scenario"
     if any(x.zone != "main" or x.s != (None, None) for x in file.road.lanelets):
@@ -217,23 +218,23 @@ def with_roles(file: DriveFile, library: Library) -> DriveFile:
         return file
     specification = library.select(file.set_name, file.options)
     scenario = scenarios.Scenario(file.scenario, file.set_name)
-    own = own_names(specification, read_claim(specification, file.formula).claim, scenario)
+    own = vehicles_by_role(specification, read_claim(specification, file.formula).claim, scenario)
     if not own:
         return file
     roles = {name: role for role, name in own.items()}
     drive = file.drive.cast({roles.get(name, name): name for name in file.drive.vehicles})
-    return replace(file, drive=drive, formula=scenarios.applied(specification, scenario).text)
+    return replace(file, drive=drive, formula=scenarios.apply_scenario(specification, scenario).text)
 
 
 def plant_drives(
     recording: Recording, files: Sequence[DriveFile], library: Library
-) -> tuple[Recording, list[Truth], list[str]]:
+) -> tuple[Recording, list[PlantedRow], list[str]]:
     """``recording`` with the drives in turn wherever there is time, what is true, and what was left out.
 
     Both directions get drives, one after the other. Raises ``UsageError`` for a road with more lanes
     than the recording has.
     """
-    truths: list[Truth] = []
+    truths: list[PlantedRow] = []
     left_out: list[str] = []
     turn = iter(cycle(range(len(files))))
     for way in (LOWER, UPPER):
@@ -246,18 +247,18 @@ def plant_drives(
                 refused.add(k)
                 continue
             merged, planted = plant(recording, files[k].drive, place)
-            found = _confirm(merged, planted, files[k], library)
-            if isinstance(found, str):
+            outcome = _confirm(merged, planted, files[k], library)
+            if isinstance(outcome, str):
                 refused.add(k)
-                left_out.append(f"scenario {files[k].scenario}, {files[k].set_name}: {found}")
+                left_out.append(f"scenario {files[k].scenario}, {files[k].set_name}: {outcome}")
                 continue
             recording = merged
-            truths.append(found)
+            truths.append(outcome)
             frame = planted.last_frame + PAUSE
     return recording, truths, list(dict.fromkeys(left_out))
 
 
-def _place(recording: Recording, file: DriveFile, way: int, frame: int) -> Place:
+def _place(recording: Recording, file: DriveFile, way: int, frame: int) -> PlantingPlace:
     """The drive's road over the rightmost lanes, its last vehicle just inside the section."""
     bands = [lane.d for lane in recording.lanes if lane.direction == way and lane.d is not None]
     if len(file.road.lanes) > len(bands):
@@ -273,10 +274,12 @@ def _place(recording: Recording, file: DriveFile, way: int, frame: int) -> Place
     steps = int(file.horizon / dt)
     while steps > 1 and max(float(state_at(m, steps * dt).s) for m in motions) + s > high - 0.5:
         steps -= 1
-    return Place(way, frame, steps * dt, round(s, 2), right)
+    return PlantingPlace(way, frame, steps * dt, round(s, 2), right)
 
 
-def _confirm(recording: Recording, planted: PlantedDrive, file: DriveFile, library: Library) -> Truth | str:
+def _confirm(
+    recording: Recording, planted: PlantedDrive, file: DriveFile, library: Library
+) -> PlantedRow | str:
     """The truth of a planted drive, or why its scenario cannot be told from the samples."""
     number = file.scenario
     assert number is not None
@@ -285,13 +288,15 @@ def _confirm(recording: Recording, planted: PlantedDrive, file: DriveFile, libra
     spec = library.select(file.set_name, file.options)
     values = {**default_values(library), **file.values}
     whole = cut_trace(recording, "planted", index, (planted.first_frame, planted.last_frame))
-    endangers = bind(scenarios.danger(spec, *scenarios.endangered(names)).formula, whole.road, {}, values)
+    endangers = bind(
+        scenarios.danger(spec, *scenario_parts.danger_pair(names)).formula, whole.road, {}, values
+    )
     reading = TraceReader(trace_of(whole.batch))
     dangers = [k for k in range(whole.batch.samples) if reading.holds(endangers, k, "strong")]
     if not dangers:
         return "no danger within the section"
     last = planted.first_frame + dangers[-1] + steps_of(values[scenarios.MIN_DANGER], whole.batch.dt)
-    lane = whole.lanes.get(scenarios.lane_owner(spec, scenarios.Scenario(number, file.set_name)), "")
+    lane = whole.lanes.get(scenario_parts.lane_owner(spec, scenarios.Scenario(number, file.set_name)), "")
     if not _same_lane(whole, file, lane):
         return f"its lane {file.lanes.get(scenarios.LANE)} is not the one that an evaluation takes"
     cut = cut_trace(recording, "planted", index, (planted.first_frame, last))
@@ -300,7 +305,7 @@ def _confirm(recording: Recording, planted: PlantedDrive, file: DriveFile, libra
         return "the trace ends with its last danger, before the scenario is complete"
     ids = planted.vehicles
     pov2 = ids[names[2]] if len(names) > 2 else None
-    return Truth(
+    return PlantedRow(
         recording.name,
         ids[scenarios.SUBJECT],
         ids[names[1]],
@@ -316,14 +321,14 @@ def _confirm(recording: Recording, planted: PlantedDrive, file: DriveFile, libra
 
 
 def _same_lane(trace: OneTrace, file: DriveFile, lane: str) -> bool:
-    """Whether ``lane`` lies over the drive's own L, counted from the right."""
+    """Return whether ``lane`` lies over the drive's own L, counted from the right."""
     ours = sorted(trace.road.lanelets, key=lambda x: x.d[0])
     theirs = sorted(file.road.lanelets, key=lambda x: x.d[0])
     places = {x.lane: k for k, x in enumerate(theirs)}
     return file.lanes.get(scenarios.LANE) in places and lane == ours[places[file.lanes[scenarios.LANE]]].lane
 
 
-def rows_of(truths: Iterable[Truth]) -> Iterator[list[object]]:
+def rows_of(truths: Iterable[PlantedRow]) -> Iterator[list[object]]:
     """Rows of planted.csv, in the order of PLANTED_COLUMNS."""
     for x in truths:
         danger = f"{float(x.min_danger):g}"

@@ -15,15 +15,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from roadproof.extensions.traffic.formats.highd import LOWER, UPPER, lanes_of_markings
+from roadproof.extensions.traffic.formats.highd_columns import LOWER, UPPER, lanes_of_markings
 from roadproof.extensions.traffic.formats.recording import Bools, Floats, Integers, Recording, offsets
-from roadproof.extensions.traffic.formats.straight import of_bands, record
-from roadproof.extensions.traffic.simulate import traffic as t
+from roadproof.extensions.traffic.formats.straight import of_bands, place_recording
+from roadproof.extensions.traffic.simulate import traffic as traffic_settings
 
 
 @dataclass(frozen=True)
 class Movement:
-    """What the simulation hands out: one row a vehicle and a row a (decision, vehicle) in the section.
+    """The result of a simulation: a row a vehicle, and a row a (decision, vehicle) in the section.
 
     ``lane`` counts from the right; ``change`` is the row of the lane change under way, -1 for none.
     Rows are in order of time; ``s`` is the front's way along the section in driving direction.
@@ -58,14 +58,14 @@ _HARDEST_BRAKING = 9.0
 class _Road:
     """All vehicles of both carriageways; lanes are numbered through: direction * tracks + lane."""
 
-    def __init__(self, traffic: t.Traffic, random: t.Random) -> None:
+    def __init__(self, traffic: traffic_settings.TrafficSettings, random: traffic_settings.Random) -> None:
         self.traffic = traffic
         self.random = random
         self.steps = _WARM_UP + int(np.ceil(traffic.seconds / STEP_SECONDS)) + 1
-        self.queues = t.draw_arrivals(traffic, self.steps * STEP_SECONDS, random)
+        self.queues = traffic_settings.draw_arrivals(traffic, self.steps * STEP_SECONDS, random)
         count = sum(len(times) for times in self.queues)
         self.lane_of = np.repeat(np.arange(len(self.queues)), [len(times) for times in self.queues])
-        self.drivers = t.Drivers(self.lane_of, traffic, random)
+        self.drivers = traffic_settings.DriverParameters(self.lane_of, traffic, random)
         self.s = np.zeros(count)
         self.v = np.zeros(count)
         self.change = np.full(count, -1)
@@ -76,7 +76,7 @@ class _Road:
         ends: list[int] = offsets(np.array([len(q) for q in self.queues])).tolist()
         self.next_in_queue, self.queue_ends = ends[:-1], ends[1:]
         self.changes: list[tuple[int, float, int, int]] = []  # step, seconds, to, vehicle
-        self.leaves = t.leavers(traffic, self.lane_of, random)
+        self.leaves = traffic_settings.leaving_vehicles(traffic, self.lane_of, random)
 
     def run(self) -> Movement:
         log: list[tuple[npt.NDArray[Any], ...]] = []
@@ -102,7 +102,7 @@ class _Road:
         return Movement(*vehicles, *columns, **change)
 
     def _enter(self, time: float) -> None:
-        """At most one vehicle a lane, when it is due and the last one is far enough away."""
+        """Add at most one vehicle to each lane, if it is due and the one ahead is far enough away."""
         for lane, vehicle in enumerate(self.next_in_queue):
             if vehicle == self.queue_ends[lane] or self.queue_times[vehicle] > time:
                 continue
@@ -143,7 +143,9 @@ class _Road:
         a = np.full(len(now), np.inf)
         np.minimum.at(a, entry[order], followed)
         if self.traffic.ramp != "none":
-            room = t.room_ahead(self.traffic, self.lane_of[now], self.s[now], self.change[now] >= 0)
+            room = traffic_settings.room_ahead(
+                self.traffic, self.lane_of[now], self.s[now], self.change[now] >= 0
+            )
             a = np.minimum(a, self._stop(now, room))
         a = self._brake_at_random(step, a)
         if len(now):
@@ -192,7 +194,9 @@ class _Road:
             allowed &= ~(self.drivers.truck[now] & (target % lanes == lanes - 1) & (self.traffic.lanes > 2))
             if self.traffic.ramp != "none":
                 leaves = self.leaves[now]
-                allowed &= t.may_change(self.traffic, lane, side, self.s[now], self.v[now], leaves)
+                allowed &= traffic_settings.may_change(
+                    self.traffic, lane, side, self.s[now], self.v[now], leaves
+                )
             spot = np.searchsorted(queue.key, target * 1e6 + self.s[now])
             ahead, after = queue.leader(spot, target), queue.follower(spot - 1, target)
             mine = self._follow(now, ahead)
@@ -203,7 +207,7 @@ class _Road:
             allowed &= (theirs > -_SAFE_BRAKING) & (mine > -_SAFE_BRAKING) & (room > 4) & (room_behind > 4)
             gain = mine - a + self.drivers.politeness[now] * (loss + relief) - side * 0.15
             if self.traffic.ramp != "none":
-                gain += t.wish(self.traffic, lane, side, self.leaves[now])
+                gain += traffic_settings.incentive(self.traffic, lane, side, self.leaves[now])
             better = allowed & (gain > 0.25) & (gain > best)
             best[better], goal[better] = gain[better], target[better]
         for way in (0, 1):
@@ -214,7 +218,9 @@ class _Road:
                 if self.traffic.ramp != "none":
                     who = now[chosen]
                     across = int(lane[chosen]), int(goal[chosen])
-                    seconds = t.in_time(self.traffic, across, seconds, self.s[who], self.v[who])
+                    seconds = traffic_settings.change_seconds(
+                        self.traffic, across, seconds, self.s[who], self.v[who]
+                    )
                 self.change[now[chosen]] = len(self.changes)
                 self.changes.append((step, seconds, int(goal[chosen]), int(now[chosen])))
 
@@ -238,7 +244,7 @@ def _where_known(vehicle: Integers, value: Floats, otherwise: float = 0.0) -> Fl
     return np.where(vehicle >= 0, value, otherwise)
 
 
-def simulate(traffic: t.Traffic, seed: int, number: int = 1) -> Recording:
+def simulate(traffic: traffic_settings.TrafficSettings, seed: int, number: int = 1) -> Recording:
     """Recording ``number`` (named 01, 02, …) of ``traffic``; it depends on ``seed`` and ``number`` only.
 
     Vehicles are in the recording while their whole box is within the section. All values are rounded
@@ -279,14 +285,14 @@ def simulate(traffic: t.Traffic, seed: int, number: int = 1) -> Recording:
         "first_frame": frame[first][by_entry],
     }
     moving = (_two_decimals(x[rows]) for x in (v + a * after, v_lat, a, a_lat))
-    return record(road, f"{number:02d}", traffic.rate, vehicles, counts, (s, d, *moving))
+    return place_recording(road, f"{number:02d}", traffic.rate, vehicles, counts, (s, d, *moving))
 
 
 def _two_decimals(values: Floats) -> Floats:
     return np.round(values, 2) + 0.0  # no negative zero
 
 
-def markings_of(traffic: t.Traffic) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def markings_of(traffic: traffic_settings.TrafficSettings) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """y of the markings: upper carriageway, 4.5 m, lower carriageway."""
 
     def lines(top: float, lanes: int) -> tuple[float, ...]:
@@ -296,11 +302,11 @@ def markings_of(traffic: t.Traffic) -> tuple[tuple[float, ...], tuple[float, ...
     return upper, lines(upper[-1] + 4.5, traffic.tracks)
 
 
-def _ticks(traffic: t.Traffic) -> int:
+def _ticks(traffic: traffic_settings.TrafficSettings) -> int:
     return round(STEP_SECONDS * traffic.rate)
 
 
-def _sample_rows(traffic: t.Traffic, movement: Movement) -> tuple[Integers, Integers]:
+def _sample_rows(traffic: traffic_settings.TrafficSettings, movement: Movement) -> tuple[Integers, Integers]:
     """Row of the movement and tick since it, for every sample in which the box is within the section."""
     ticks = _ticks(traffic)
     row = np.repeat(np.arange(len(movement.step)), ticks)
@@ -313,7 +319,11 @@ def _sample_rows(traffic: t.Traffic, movement: Movement) -> tuple[Integers, Inte
 
 
 def _drive_across(
-    traffic: t.Traffic, movement: Movement, row: Integers, after: Floats, random: np.random.Generator
+    traffic: traffic_settings.TrafficSettings,
+    movement: Movement,
+    row: Integers,
+    after: Floats,
+    random: np.random.Generator,
 ) -> tuple[Floats, Floats, Floats]:
     """Left side from the right edge of the road, lateral velocity and acceleration, for every sample.
 

@@ -1,30 +1,31 @@
-"""What is simulated, and who drives: drawn once, for every vehicle that will ever enter; and ramps.
+"""The settings of a simulation, the drivers of all vehicles, drawn once, and ramps.
 
 The ramp is one more lane to the right of the main lanes of the lower carriageway. A merge lane ends with its
 zone, so whoever is on it has to leave it before; a departure lane begins with its zone and goes on, and
 whoever leaves has to be on it by the end of the zone, or stays on the main road.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
-from fractions import Fraction
-from typing import Any, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from roadproof.errors import UsageError
-from roadproof.extensions.traffic.formats.highd import LOWER
-from roadproof.extensions.traffic.formats.recording import Bools, Floats, Integers
-from roadproof.world.lanelet_rules import shared_boundaries
-from roadproof.world.road import Attribute, Lanelet, Road, Zone
+from roadproof.extensions.traffic.formats.highd_columns import LOWER
+
+if TYPE_CHECKING:
+    from roadproof.extensions.traffic.formats.recording import Bools, Floats, Integers
 
 Random: TypeAlias = np.random.Generator
 Ramp: TypeAlias = Literal["none", "merge", "depart"]
 
 
 @dataclass(frozen=True)
-class Traffic:
-    """What to simulate: SI units, ``flow`` in vehicles per hour and direction.
+class TrafficSettings:
+    """The settings of simulated traffic: SI units, ``flow`` in vehicles per hour and direction.
 
     ``ramp``: the lower carriageway has an on-ramp (merge) or an off-ramp (depart), of ``ramp_flow`` vehicles
     per hour.
@@ -64,10 +65,10 @@ class Traffic:
         return self.lanes + (self.ramp != "none")
 
 
-class Drivers:
+class DriverParameters:
     """Parameters of every vehicle that will ever enter, drawn once."""
 
-    def __init__(self, lane: Integers, traffic: Traffic, random: Random) -> None:
+    def __init__(self, lane: Integers, traffic: TrafficSettings, random: Random) -> None:
         count = len(lane)
         preference = np.array([0.75, 0.25] + [0.0] * (traffic.lanes - 2)) * traffic.lanes
         place = np.maximum(
@@ -91,7 +92,7 @@ class Drivers:
         self.politeness = np.clip(random.normal(0.35, 0.2, count), 0, 1)
 
 
-def draw_arrivals(traffic: Traffic, seconds: float, random: Random) -> list[Floats]:
+def draw_arrivals(traffic: TrafficSettings, seconds: float, random: Random) -> list[Floats]:
     """Arrival times for each lane of both directions: exponential headways after a least one of 0.8 s."""
     flows = [traffic.flow * share for share in np.linspace(0.9, 1.1, traffic.lanes) / traffic.lanes]
     if traffic.ramp != "none":
@@ -121,27 +122,29 @@ LEAST_SECONDS = 3.0
 """As long as a change from or to a ramp takes at least."""
 
 
-def zone_of(traffic: Traffic) -> tuple[float, float]:
-    """Where the zone begins and ends, in m along the section (whole metres)."""
+def zone_of(traffic: TrafficSettings) -> tuple[float, float]:
+    """Return where the zone begins and ends, in m along the section (whole metres)."""
     return float(round(0.1 * traffic.section)), float(round(0.9 * traffic.section))
 
 
-def may_change(traffic: Traffic, lane: Integers, side: int, s: Floats, v: Floats, leaves: Bools) -> Bools:
-    """Which vehicles may change to that side (1 left, -1 right), as far as the ramp is concerned."""
+def may_change(
+    traffic: TrafficSettings, lane: Integers, side: int, s: Floats, v: Floats, leaves: Bools
+) -> Bools:
+    """Return which vehicles may change to that side (1 left, -1 right), as far as the ramp is concerned."""
     begin, end = zone_of(traffic)
     inside = (s > begin + 1) & (s < end - LEAST_SECONDS * np.maximum(v, 5.0))
     on_ramp, beside = lane == _ramp(traffic), lane == _ramp(traffic) + 1
     across = on_ramp if side > 0 else beside
     right = traffic.ramp == ("merge" if side > 0 else "depart")
-    wanted = inside & (leaves | (traffic.ramp == "merge")) if right else np.zeros(len(lane), bool)
+    permitted = inside & (leaves | (traffic.ramp == "merge")) if right else np.zeros(len(lane), bool)
     upper = lane // traffic.tracks != WAY
     no_lane = upper & (side < 0) & (lane % traffic.tracks == 1)
-    may: Bools = ~no_lane & (~across | wanted)
+    may: Bools = ~no_lane & (~across | permitted)
     return may
 
 
-def wish(traffic: Traffic, lane: Integers, side: int, leaves: Bools) -> Floats:
-    """What a change to that side is worth beyond what MOBIL says, in m/s²."""
+def incentive(traffic: TrafficSettings, lane: Integers, side: int, leaves: Bools) -> Floats:
+    """Return the incentive to change to a side in addition to MOBIL's, in m/s²."""
     on_ramp, beside = lane == _ramp(traffic), lane == _ramp(traffic) + 1
     if traffic.ramp == "merge":
         return np.where(on_ramp & (side > 0), URGENT, 0.0)
@@ -149,46 +152,32 @@ def wish(traffic: Traffic, lane: Integers, side: int, leaves: Bools) -> Floats:
     return np.where(leaves & beside & (side < 0), URGENT, np.where(left, -side * EARLY, 0.0))
 
 
-def room_ahead(traffic: Traffic, lane: Integers, s: Floats, changing: Bools) -> Floats:
+def room_ahead(traffic: TrafficSettings, lane: Integers, s: Floats, changing: Bools) -> Floats:
     """Metres to the end of the merge lane for those who still have to leave it, infinite for others."""
     waits = (lane == _ramp(traffic)) & ~changing & (traffic.ramp == "merge")
     return np.where(waits, np.maximum(zone_of(traffic)[1] - s, 0.1), np.inf)
 
 
-def in_time(traffic: Traffic, lanes: tuple[int, int], seconds: float, s: float, v: float) -> float:
-    """How long a change between two lanes takes: one from or to the ramp is done where the zone ends."""
+def change_seconds(
+    traffic: TrafficSettings, lanes: tuple[int, int], seconds: float, s: float, v: float
+) -> float:
+    """Return how long a change between two lanes takes: one from or to the ramp is done where the zone
+    ends.
+    """
     if _ramp(traffic) not in lanes:
         return seconds
     return min(seconds, max(LEAST_SECONDS, (zone_of(traffic)[1] - s) / max(v, 5.0)))
 
 
-def _ramp(traffic: Traffic) -> int:
+def _ramp(traffic: TrafficSettings) -> int:
     """The number of the ramp among the lanes of both directions."""
     return WAY * traffic.tracks
 
 
-def road_of(traffic: Traffic, markings: tuple[float, ...]) -> Road:
-    """The lower carriageway with its ramp in a recording's s and d; ``markings`` are y from the left on."""
-    begin, end = (Fraction(round(x)) for x in zone_of(traffic))
-    edges = [Fraction(str(-y)) for y in reversed(markings)]
-    zone: Zone = "merge" if traffic.ramp == "merge" else "depart"
-    attribute: Attribute = "merge" if traffic.ramp == "merge" else "departure"
-    span = (None, end) if traffic.ramp == "merge" else (begin, None)
-    lanelets = [Lanelet("ramp", f"{attribute}-1", zone, attribute, span, (edges[0], edges[1]))]
-    for k in range(1, traffic.tracks):
-        parts: tuple[tuple[str, Zone, Any], ...] = (
-            ("a", "main", (None, begin)),
-            ("b", zone, (begin, end)),
-            ("c", "main", (end, None)),
-        )
-        for name, where, s in parts:
-            lanelets.append(Lanelet(f"m{k}{name}", f"main-{k}", where, "main", s, (edges[k], edges[k + 1])))
-    made = tuple(lanelets)
-    return Road(f"{traffic.ramp} in the section", made, shared_boundaries(made))
-
-
-def leavers(traffic: Traffic, lane: Integers, random: np.random.Generator) -> npt.NDArray[np.bool_]:
-    """Who wants to leave: of the lower carriageway, so many as the ramp carries."""
+def leaving_vehicles(
+    traffic: TrafficSettings, lane: Integers, random: np.random.Generator
+) -> npt.NDArray[np.bool_]:
+    """Return which vehicles want to leave: on the lower carriageway, as many as the ramp carries."""
     if traffic.ramp != "depart":
         return np.zeros(len(lane), bool)
     drawn = random.random(len(lane)) < traffic.ramp_flow / traffic.flow

@@ -1,86 +1,86 @@
-// What the buttons and the keys do.
+// The actions of buttons and keys.
 
 import { batch } from "vendor/view";
 import { save } from "viewer/verdict";
 import { inOneStep } from "studio/history";
-import { keepQuestion, questionNow } from "studio/recent";
+import { currentQuestion, storeQuestion } from "studio/recent";
 import { ask } from "studio/server";
 import * as state from "studio/state";
 
 const LARGEST = 60_000_000; // bytes of files that are dropped together
 let running = null;
 
-/** The definitions as they are now; what was explained, or went wrong, of the former ones is gone. */
-export function rewrite(text) {
+/** Replace the definitions; explanations and errors of the former ones are cleared. */
+export function setDefinitions(text) {
   batch(() => {
     forgetMarks();
-    state.kept.text.value = text;
+    state.saved.text.value = text;
   });
 }
 
-/** The definitions of a file in place of those of the editor, which `undo` brings back. */
-export function loadText(text) {
-  inOneStep(() => rewrite(text));
+/** Replace the definitions in the editor by those of a file; `undo` brings the former ones back. */
+export function loadDefinitions(text) {
+  inOneStep(() => setDefinitions(text));
 }
 
-/** Another question. */
-export function askAnother(text) {
+/** Replace the question. */
+export function setQuestion(text) {
   batch(() => {
     forgetMarks();
-    state.kept.formula.value = text;
+    state.saved.formula.value = text;
   });
 }
 
 function forgetMarks() {
   if (state.explain.peek() !== null) state.explain.value = null;
   if (state.clashes.peek().length) state.clashes.value = [];
-  if (state.trouble.peek()) state.trouble.value = "";
+  if (state.errorText.peek()) state.errorText.value = "";
 }
 
-/** End what runs. The server ends the worker of a job that nobody listens to. */
+/** Stop the running job. The server ends the worker of a job whose request was closed. */
 export function stop() {
   running?.abort();
   running = null;
   state.job.value = null;
 }
 
-/** Ask one long question after ending the former one; null where it was stopped or failed. */
-async function askLong(title, kind, question) {
+/** Stop the running job, then run another one; resolve to its answer, null where it was stopped or failed. */
+async function runJob(title, kind, question) {
   stop();
-  const mine = new AbortController();
-  running = mine;
-  const begun = performance.now();
+  const controller = new AbortController();
+  running = controller;
+  const started = performance.now();
   state.job.value = { title, stage: "", seconds: 0 };
-  state.trouble.value = "";
-  const tell = (message) => {
-    if (running !== mine) return;
+  state.errorText.value = "";
+  const showProgress = (message) => {
+    if (running !== controller) return;
     const stage = message.waiting ? "waiting for a worker" : (message.stage ?? "");
-    state.job.value = { title, stage, seconds: (performance.now() - begun) / 1000 };
+    state.job.value = { title, stage, seconds: (performance.now() - started) / 1000 };
   };
   const ticking = setInterval(() => {
-    if (running === mine && state.job.value) tell({ stage: state.job.value.stage });
+    if (running === controller && state.job.value) showProgress({ stage: state.job.value.stage });
   }, 250);
   try {
-    const told = await ask(kind, question, { hear: tell, signal: mine.signal });
-    if (told.error) {
-      state.trouble.value = told.error;
+    const reply = await ask(kind, question, { onMessage: showProgress, signal: controller.signal });
+    if (reply.error) {
+      state.errorText.value = reply.error;
       return null;
     }
-    return { ...told.answer, seconds: told.seconds, cpu: told.cpu };
+    return { ...reply.answer, seconds: reply.seconds, cpu: reply.cpu };
   } catch (error) {
-    if (error.name !== "AbortError") state.trouble.value = error.message;
+    if (error.name !== "AbortError") state.errorText.value = error.message;
     return null;
   } finally {
     clearInterval(ticking);
-    if (running === mine) {
+    if (running === controller) {
       running = null;
       state.job.value = null;
     }
   }
 }
 
-/** Show an answer, and its drive where it has one. */
-function take(answer, { show = true, compared = false } = {}) {
+/** Add an answer to the list, and show its drive where it has one. */
+function addAnswer(answer, { show = true, compared = false } = {}) {
   batch(() => {
     state.answers.value = [{ ...answer, key: Date.now() + Math.random() }, ...state.answers.value].slice(0, 6);
     state.clashes.value = answer.marks ?? [];
@@ -91,49 +91,49 @@ function take(answer, { show = true, compared = false } = {}) {
 /** Show a drive from its start. */
 export function showDrive(drive, view, compared = false) {
   batch(() => {
-    state.kept.drive.value = drive;
-    state.kept.compared.value = compared;
+    state.saved.drive.value = drive;
+    state.saved.compared.value = compared;
     if (view) state.view.value = view;
-    state.fromTheStart();
+    state.resetView();
   });
 }
 
-/** A drive of a file, with the formula that the file is about as the question; `play`: begin to play it. */
+/** Show the drive of a file, with the formula of the file as the question; `play`: start to play it. */
 export function showFile(drive, view, { play = false } = {}) {
   batch(() => {
     state.recording.value = null;
-    state.kept.formula.value = drive.formula ?? state.kept.formula.value;
+    state.saved.formula.value = drive.formula ?? state.saved.formula.value;
     showDrive(drive, view);
-    state.plays.value = play && !state.wantsRest();
+    state.autoplay.value = play && !state.prefersReducedMotion();
   });
 }
 
-let found = { text: "", count: 0 };
+let lastSearch = { text: "", count: 0 }; // the last question, and how many drives of it were found
 
 /**
- * Find a drive; `negated`: one without it; `next`: one that differs clearly from those before; `fresh`: even if
- * the answer is known.
+ * Find a drive. `negated`: one on which the question is false; `next`: one that differs clearly from those before;
+ * `fresh`: search even if the answer is known.
  */
 export async function find({ negated = false, next = false, fresh = false } = {}) {
-  const question = { ...state.question.value, settings: state.settingsOf("find"), negated };
+  const question = { ...state.question.value, settings: state.optionValues("find"), negated };
   const text = JSON.stringify(question);
-  const count = next && found.text === text ? found.count + 1 : next ? 2 : 1;
+  const count = next && lastSearch.text === text ? lastSearch.count + 1 : next ? 2 : 1;
   const title = negated ? "Find one without it" : count > 1 ? `Find drive ${count}` : "Find a drive";
-  const asked = questionNow(negated ? "without" : "find");
-  const answer = await askLong(title, "find", { ...question, count, fresh });
+  const request = currentQuestion(negated ? "without" : "find");
+  const answer = await runJob(title, "find", { ...question, count, fresh });
   if (!answer) return;
-  keepQuestion(asked, answer.verdict);
-  found = { text, count: answer.drive ? count : found.count };
-  take({ ...answer, again: () => find({ negated, fresh: true }) });
+  storeQuestion(request, answer.verdict);
+  lastSearch = { text, count: answer.drive ? count : lastSearch.count };
+  addAnswer({ ...answer, again: () => find({ negated, fresh: true }) });
 }
 
-/** Why the selected part of the question is true or false at the present time: in the strips, in the text. */
+/** Explain why the selected part of the question is true or false now, in the strips and in the text; or stop it. */
 export function explain() {
   const { formula, id } = state.look.selected.value;
   const doc = state.view.value;
-  if (!doc) return say("Explain is about a drive that is shown: find one first.");
-  if (state.kept.drive.value === null) {
-    return say("Explain is about judged drives: a recording is only known at its samples. See its strips.");
+  if (!doc) return showNotice("Explain is about a drive that is shown: find one first.");
+  if (state.saved.drive.value === null) {
+    return showNotice("Explain is about judged drives: a recording is only known at its samples. See its strips.");
   }
   const at = state.look.time.value;
   const same = state.explain.value;
@@ -143,130 +143,130 @@ export function explain() {
 }
 
 export async function prove({ fresh = false } = {}) {
-  const settings = state.settingsOf("prove");
-  const asked = questionNow("prove");
-  const answer = await askLong("Prove", "prove", { ...state.question.value, settings, fresh });
+  const settings = state.optionValues("prove");
+  const request = currentQuestion("prove");
+  const answer = await runJob("Prove", "prove", { ...state.question.value, settings, fresh });
   if (!answer) return;
-  keepQuestion(asked, answer.verdict);
-  take({ ...answer, again: () => prove({ fresh: true }) });
+  storeQuestion(request, answer.verdict);
+  addAnswer({ ...answer, again: () => prove({ fresh: true }) });
 }
 
-/** Before against after the edit, both directions at once; each answer is shown when it is there. */
+/** Compare the question before and after the edit, in both directions at once; show each answer when it arrives. */
 export async function compare() {
   stop();
-  const mine = new AbortController();
-  running = mine;
-  const begun = performance.now();
+  const controller = new AbortController();
+  running = controller;
+  const started = performance.now();
   const stages = { true: "", false: "" };
   let isShown = false;
   const tick = () => {
-    const seconds = (performance.now() - begun) / 1000;
+    const seconds = (performance.now() - started) / 1000;
     const stage = Object.values(stages).filter(Boolean).join(" · ");
-    if (running === mine) state.job.value = { title: "Compare", stage, seconds };
+    if (running === controller) state.job.value = { title: "Compare", stage, seconds };
   };
   const ticking = setInterval(tick, 250);
   tick();
-  state.trouble.value = "";
-  const one = async (forward) => {
-    const hear = (message) => {
+  state.errorText.value = "";
+  const compareOne = async (forward) => {
+    const onMessage = (message) => {
       stages[forward] = message.waiting ? "waiting" : (message.stage ?? "");
     };
-    const told = await ask("compare", { ...state.question.value, forward }, { hear, signal: mine.signal });
+    const reply = await ask("compare", { ...state.question.value, forward }, { onMessage, signal: controller.signal });
     stages[forward] = "";
-    if (told.error) state.trouble.value = told.error;
+    if (reply.error) state.errorText.value = reply.error;
     else {
-      const [one, other] = told.answer.sets.map((x) => (x === "edit" ? "after" : "before"));
-      const so = { PROVED: "it holds", REFUTED: "it does not always hold" }[told.answer.verdict];
-      const promise = `Where it holds ${one} the edit, ${so ?? "nobody knows whether it holds"} ${other} it.`;
-      take({ ...told.answer, promise, seconds: told.seconds, cpu: told.cpu }, { compared: true, show: !isShown });
-      isShown ||= Boolean(told.answer.drive);
+      const [one, other] = reply.answer.sets.map((x) => (x === "edit" ? "after" : "before"));
+      const result = { PROVED: "it holds", REFUTED: "it does not always hold" }[reply.answer.verdict];
+      const promise = `Where it holds ${one} the edit, ${result ?? "nobody knows whether it holds"} ${other} it.`;
+      addAnswer({ ...reply.answer, promise, seconds: reply.seconds, cpu: reply.cpu }, { compared: true, show: !isShown });
+      isShown ||= Boolean(reply.answer.drive);
     }
   };
   try {
-    await Promise.all([one(true), one(false)]);
+    await Promise.all([compareOne(true), compareOne(false)]);
   } catch (error) {
-    if (error.name !== "AbortError") state.trouble.value = error.message;
+    if (error.name !== "AbortError") state.errorText.value = error.message;
   } finally {
     clearInterval(ticking);
-    if (running === mine) {
+    if (running === controller) {
       running = null;
       state.job.value = null;
     }
   }
 }
 
-/** Keep the present text as what the next edit is compared with; a second time forgets it. */
+/** Store the present text for a comparison with the next edit. */
 export function keepAsBefore() {
-  state.kept.before.value = state.kept.text.value;
-  say("Kept: Compare now tells this text from the next one.");
+  state.saved.before.value = state.saved.text.value;
+  showNotice("Kept: Compare now tells this text from the next one.");
 }
 
 export function forgetBefore() {
-  state.kept.before.value = null;
+  state.saved.before.value = null;
 }
 
-/** A word that goes away. */
-export function say(text) {
-  state.said.value = text;
+/** Show a message for some seconds. */
+export function showNotice(text) {
+  state.notice.value = text;
   setTimeout(() => {
-    if (state.said.value === text) state.said.value = "";
+    if (state.notice.value === text) state.notice.value = "";
   }, 4000);
 }
 
-/** The drive that is shown as a page of its own. */
+/** Save the shown drive as an HTML page of its own. */
 export async function savePage() {
-  const drive = state.kept.drive.value;
-  if (!drive) return say("There is no drive to be saved: find one first.");
-  const asked = { ...state.question.value, drive, compare: state.kept.compared.value };
-  const told = await ask("page", { ...asked, explain: state.explain.value }).catch((error) => ({ error: error.message }));
-  if (told.error) state.trouble.value = told.error;
-  else save({ name: "drive.html", content: told.answer.page, kind: "text/html" });
+  const drive = state.saved.drive.value;
+  if (!drive) return showNotice("There is no drive to be saved: find one first.");
+  const request = { ...state.question.value, drive, compare: state.saved.compared.value };
+  const reply = await ask("page", { ...request, explain: state.explain.value }).catch((error) => ({ error: error.message }));
+  if (reply.error) state.errorText.value = reply.error;
+  else save({ name: "drive.html", content: reply.answer.page, kind: "text/html" });
 }
 
 export async function copy(text) {
   try {
     await navigator.clipboard.writeText(text);
-    say("Copied.");
+    showNotice("Copied.");
   } catch {
-    say("The browser does not let the page copy: mark the text and copy it.");
+    showNotice("The browser does not let the page copy: mark the text and copy it.");
   }
 }
 
-/** Files that were dropped on the page, or chosen: definitions, a drive, a certificate, a recording. */
+/** Open files that were dropped on the page: definitions, a drive, a certificate or a recording. */
 export async function open(list) {
   const files = [];
   if (list.reduce((sum, x) => sum + x.size, 0) > LARGEST) {
-    state.trouble.value = "The files are larger than 60 MB together: ask `roadproof evaluate` on the command line.";
+    state.errorText.value = "The files are larger than 60 MB together: ask `roadproof evaluate` on the command line.";
     return;
   }
   for (const file of list) files.push({ name: file.name, content: await file.text() });
-  await openTexts(files);
+  await openFiles(files);
 }
 
-/** Files with their names and contents, as `open`; those that the studio was started with, too. */
-export async function openTexts(files) {
+/** Open files by name and content; the studio may have been started with them. */
+export async function openFiles(files) {
   if (!files.length) return;
   const spec = files.find((x) => x.name.endsWith(".spec"));
   if (spec) {
-    state.trouble.value = "";
+    state.errorText.value = "";
     state.specs.value = [...state.specs.value.filter((x) => x.name !== spec.name), { name: spec.name, text: spec.content }];
-    loadText(spec.content);
+    loadDefinitions(spec.content);
     return;
   }
-  if (!files.every((x) => x.name.endsWith(".json"))) return openTogether(files);
-  const troubles = [];
+  if (!files.every((x) => x.name.endsWith(".json"))) return openGroup(files);
+  const problems = [];
   let isShown = false;
   for (const file of files) {
-    isShown = (await openTogether([file], !isShown)) || isShown;
-    if (state.trouble.value) troubles.push(state.trouble.value);
+    isShown = (await openGroup([file], !isShown)) || isShown;
+    if (state.errorText.value) problems.push(state.errorText.value);
   }
-  if (troubles.length) state.trouble.value = troubles.join("\n");
+  if (problems.length) state.errorText.value = problems.join("\n");
 }
 
-/** Files that belong together; whether a drive is among them, which is shown where `show` says so. */
-async function openTogether(files, show = true) {
+/** Open files that belong together; resolve to whether a drive is among them. `show`: show it. */
+async function openGroup(files, show = true) {
   const title = `Open ${files.map((x) => x.name).join(", ")}`;
-  const answer = await askLong(title, "drop", { ...state.question.value, files });
+  const answer = await runJob(title, "drop", { ...state.question.value, files });
   if (!answer) return false;
   if (answer.drive) {
     const [{ name }] = files;
@@ -280,14 +280,14 @@ async function openTogether(files, show = true) {
     const promise = answer.checked.accepted
       ? "Checked again, without the programs that made it."
       : "It does not show what it says.";
-    take({ ...answer.checked, promise, reason: answer.checked.told });
+    addAnswer({ ...answer.checked, promise, reason: answer.checked.told });
   }
   return Boolean(answer.drive);
 }
 
-/** A pair of the recording that was dropped, with the question, or with a scenario by its number. */
+/** Show a pair of the dropped recording, with the question, or with scenario `number`. */
 export async function showPair(row, number = null) {
-  if (number !== null) state.kept.formula.value = String(number);
+  if (number !== null) state.saved.formula.value = String(number);
   state.pair.value = row;
   const pair = {
     recording: String(row.recording),
@@ -296,11 +296,11 @@ export async function showPair(row, number = null) {
     last: row.last_frame,
   };
   const question = { ...state.question.value, files: state.recording.value.contents, pair };
-  const answer = await askLong(`Vehicles ${row.vehicles.join(", ")}`, "pair", question);
+  const answer = await runJob(`Vehicles ${row.vehicles.join(", ")}`, "pair", question);
   if (answer && state.pair.value === row) showRecorded(answer.view);
 }
 
-/** A recorded trace. It is not in the address, since recordings are large. */
+/** Show a recorded trace. It is not in the address, since recordings are large. */
 function showRecorded(view) {
   const row = state.pair.peek();
   batch(() => {

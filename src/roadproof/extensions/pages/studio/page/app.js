@@ -3,7 +3,7 @@
 import { effect, html, render, useLayoutEffect, useRef } from "vendor/view";
 import { toggle, Viewer } from "viewer/viewer";
 import * as actions from "studio/actions";
-import { fromAddress, toAddress } from "studio/address";
+import { readAddress, writeAddress } from "studio/address";
 import { Bar, toggleTheme } from "studio/bar";
 import { followEdits } from "studio/live";
 import { followSets, Gallery, toGallery } from "studio/gallery";
@@ -53,7 +53,7 @@ function Help() {
   return state.help.value ? html`<${Keys} />` : null;
 }
 
-/** The keys; the dialog takes the focus and gives it back. */
+/** The dialog with the keys; it takes the focus and gives it back. */
 function Keys() {
   const main = useRef(null);
   useLayoutEffect(() => {
@@ -92,8 +92,8 @@ function isTyping(target) {
   return target.closest?.(".cm-editor, input[type=text], select, textarea") !== null;
 }
 
-/** Ctrl-Z and its like outside of editors, which have their own. */
-function undoneBy(event) {
+/** Return the command of Ctrl-Z or Ctrl-Y outside of editors, which have their own; else null. */
+function undoCommand(event) {
   if (!(event.ctrlKey || event.metaKey) || event.altKey || isTyping(event.target)) return null;
   const key = event.key.toLowerCase();
   if (key === "y" || (key === "z" && event.shiftKey)) return redo;
@@ -101,10 +101,10 @@ function undoneBy(event) {
 }
 
 function onKey(event) {
-  const undone = undoneBy(event);
-  if (undone) {
+  const command = undoCommand(event);
+  if (command) {
     event.preventDefault();
-    return undone();
+    return command();
   }
   if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
   if (isTyping(event.target)) {
@@ -117,10 +117,10 @@ function onKey(event) {
     return;
   }
   if ((event.key === " " || event.key === "Enter") && event.target.closest("button, input")) return;
-  const known = KEYS.find(([key]) => key === event.key);
-  if (known) {
+  const binding = KEYS.find(([key]) => key === event.key);
+  if (binding) {
     event.preventDefault();
-    known[2]();
+    binding[2]();
   }
 }
 
@@ -129,22 +129,22 @@ function onDrop(event) {
   actions.open([...event.dataTransfer.files]);
 }
 
-async function begin() {
+async function main() {
   takeToken();
-  const wanted = recall("theme");
-  const dark = wanted ? wanted === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  const storedTheme = recall("theme");
+  const dark = storedTheme ? storedTheme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
   document.documentElement.dataset.theme = dark ? "dark" : "light";
   state.theme.value = dark ? "dark" : "light";
-  const begun = await start();
-  state.drives.value = begun.drives;
-  state.specs.value = begun.specs;
-  state.form.value = begun.form;
-  examples.value = begun.examples;
-  const said = await fromAddress();
-  if (said) state.takeOver(said);
+  const content = await start();
+  state.drives.value = content.drives;
+  state.specs.value = content.specs;
+  state.form.value = content.form;
+  examples.value = content.examples;
+  const addressed = await readAddress();
+  if (addressed) state.applyState(addressed);
   else {
-    if (begun.text) state.kept.text.value = begun.text;
-    if (begun.shows) actions.showFile(begun.drives[0].drive);
+    if (content.text) state.saved.text.value = content.text;
+    if (content.shows) actions.showFile(content.drives[0].drive);
   }
   const app = document.getElementById("app");
   app.textContent = "";
@@ -152,31 +152,31 @@ async function begin() {
   document.addEventListener("keydown", onKey);
   document.addEventListener("dragover", (event) => event.preventDefault());
   document.addEventListener("drop", onDrop);
-  addEventListener("popstate", async () => state.takeOver((await fromAddress()) ?? {}));
-  keepAddress();
+  addEventListener("popstate", async () => state.applyState((await readAddress()) ?? {}));
+  followAddress();
   followChanges();
   followEdits();
-  followSets(!begun.shows);
-  if (!said && begun.files.length) actions.openTexts(begun.files);
-  else if (!said) welcome();
+  followSets(!content.shows);
+  if (!addressed && content.files.length) actions.openFiles(content.files);
+  else if (!addressed) welcome();
   document.documentElement.dataset.ready = "yes";
 }
 
-/** Edits replace the address, a new drive is a new entry of the history. */
-function keepAddress() {
+/** Write each change into the address; only a new drive makes a new history entry. */
+function followAddress() {
   let timer = 0;
-  let last = state.kept.drive.peek();
+  let last = state.saved.drive.peek();
   effect(() => {
-    const data = state.asData();
+    const data = state.savedData();
     clearTimeout(timer);
     timer = setTimeout(() => {
-      toAddress(data, data.drive !== last && last !== null);
+      writeAddress(data, data.drive !== last && last !== null);
       last = data.drive;
     }, 300);
   });
 }
 
-begin().catch((error) => {
+main().catch((error) => {
   const app = document.getElementById("app");
   app.textContent = `The studio cannot be used: ${error.message}`;
 });

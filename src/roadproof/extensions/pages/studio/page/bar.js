@@ -1,4 +1,4 @@
-// The bar above: what is asked, and what can be done with it.
+// The bar at the top: the question, and the actions on it.
 
 import { html } from "vendor/view";
 import * as actions from "studio/actions";
@@ -8,11 +8,11 @@ import { canRedo, canUndo, redo, undo } from "studio/history";
 import * as state from "studio/state";
 import { remember } from "studio/store";
 
-// The options of a job, as the server describes them: a list of words to choose from, or a switch.
+// The options of a job, as the server describes them: a choice of words, or a checkbox.
 function Options({ job }) {
   return state.form.value.filter((x) => x.job === job).map((x) => {
-    const value = state.settingOf(x);
-    const set = (chosen) => (state.kept.settings.value = { ...state.kept.settings.value, [x.name]: chosen });
+    const value = state.optionValue(x);
+    const set = (chosen) => (state.saved.settings.value = { ...state.saved.settings.value, [x.name]: chosen });
     return x.choices
       ? html`<select aria-label=${x.name} title=${x.help} value=${value} onChange=${(e) => set(e.target.value)}>
           ${x.choices.map((choice) => html`<option>${choice}</option>`)}
@@ -22,23 +22,23 @@ function Options({ job }) {
 }
 
 export function Bar() {
-  const { kept, names, about, job } = state;
-  const called = about.value.formula;
+  const { saved, names, descriptions, job } = state;
+  const description = descriptions.value.formula;
   const wrong = state.mistakes.value.find((x) => x.where === "formula");
   return html`<header class="bar">
     <div class="first">
       <button class="gallery-switch" title="g" aria-expanded=${isOpen.value} aria-controls="gallery" onClick=${toggleGallery}>☰ Gallery</button>
       <h1>roadproof studio</h1>
       <label>on top of
-        <select aria-label="Spec set" value=${kept.base.value} onChange=${(e) => (kept.base.value = e.target.value)}>
-          ${(names.value?.sets ?? [{ name: kept.base.value }])
+        <select aria-label="Spec set" value=${saved.base.value} onChange=${(e) => (saved.base.value = e.target.value)}>
+          ${(names.value?.sets ?? [{ name: saved.base.value }])
             .filter((x) => !["edit", "before"].includes(x.name))
             .map((x) => html`<option value=${x.name} title=${x.doc}>${x.name}</option>`)}
         </select>
       </label>
       <div class="asked">
-        <${Editor} where="formula" label="Question" line=${true} read=${() => kept.formula.value} hint="a formula, or a scenario's number"
-          onChange=${actions.askAnother} onEnter=${() => actions.find()} />
+        <${Editor} where="formula" label="Question" line=${true} read=${() => saved.formula.value} hint="a formula, or a scenario's number"
+          onChange=${actions.setQuestion} onEnter=${() => actions.find()} />
       </div>
       <span class="steps">
         <button class="icon" title="Undo (u, Ctrl-Z)" aria-label="Undo" disabled=${!canUndo.value} onClick=${undo}>↶</button>
@@ -50,8 +50,8 @@ export function Bar() {
       <button class="icon" title="Keys (?)" aria-label="Keys" onClick=${() => (state.help.value = true)}>?</button>
     </div>
     <div class="second">
-      <div class="called" title=${wrong ? `${wrong.message} ${wrong.hint}` : (called?.sentence ?? "")}>
-        ${wrong ? html`<span class="wrong">${wrong.message}</span> <span class="faint">${wrong.hint}</span>` : html`<b>${called?.name ?? ""}</b> ${called?.sentence ?? ""}`}
+      <div class="called" title=${wrong ? `${wrong.message} ${wrong.hint}` : (description?.sentence ?? "")}>
+        ${wrong ? html`<span class="wrong">${wrong.message}</span> <span class="faint">${wrong.hint}</span>` : html`<b>${description?.name ?? ""}</b> ${description?.sentence ?? ""}`}
       </div>
       <div class="buttons">
         <button class="main" title="f" onClick=${() => actions.find()}>Find a drive</button>
@@ -69,9 +69,9 @@ export function Bar() {
         ? html`<span class="spinner" aria-hidden="true"></span><b>${job.value.title}</b> <span>${job.value.stage}</span>
             <span class="seconds">${job.value.seconds.toFixed(1)} s</span>
             <button class="stop" title="Esc" onClick=${() => actions.stop()}>Stop</button>`
-        : state.trouble.value
-          ? html`<span class="wrong" role="alert">${state.trouble.value}</span>`
-          : html`<span class="faint">${state.said.value}</span>`}
+        : state.errorText.value
+          ? html`<span class="wrong" role="alert">${state.errorText.value}</span>`
+          : html`<span class="faint">${state.notice.value}</span>`}
     </div>
   </header>`;
 }

@@ -1,4 +1,4 @@
-// The editors: definitions, and formulas in one line. Words, hovers and mistakes come from the server.
+// The editors for definitions and for one-line formulas. Completion, hovers and mistakes come from the server.
 
 import { html, useEffect, useRef } from "vendor/view";
 import * as cm from "vendor/edit";
@@ -13,26 +13,26 @@ const SORTS = /^(?:vehicles|vehicle|lanelet|lane)\b/;
 const language = cm.StreamLanguage.define({
   name: "roadproof",
   startState: () => ({ wasNumber: false, wasDef: false }),
-  token(stream, now) {
-    const { wasNumber, wasDef } = now;
-    now.wasNumber = false;
-    now.wasDef = false;
+  token(stream, last) {
+    const { wasNumber, wasDef } = last; // the kind of the token before
+    last.wasNumber = false;
+    last.wasDef = false;
     if (stream.eatSpace()) {
-      now.wasNumber = wasNumber;
-      now.wasDef = wasDef;
+      last.wasNumber = wasNumber;
+      last.wasDef = wasDef;
       return null;
     }
     if (stream.match(/^#.*/)) return "comment";
     if (stream.match(/^"[^"]*"?/)) return "string";
     if (wasNumber && stream.match(UNIT)) return "unit";
     if (stream.match(/^\d+(?:\.\d+)?(?:[eE][+-]?\d+)?/)) {
-      now.wasNumber = true;
+      last.wasNumber = true;
       return "number";
     }
     if (stream.match(LOGIC)) return "operatorKeyword";
     if (stream.match(SORTS)) return "typeName";
     if (stream.match(WORDS)) {
-      now.wasDef = true;
+      last.wasDef = true;
       return "keyword";
     }
     if (stream.match(/^[A-Za-z_][\w{}@-]*/)) return wasDef ? "definition" : "variableName";
@@ -107,14 +107,14 @@ const hover = cm.hoverTooltip(
     if (begin === end || (begin === pos && side < 0) || (end === pos && side > 0)) return null;
     const name = text.slice(begin - from, end - from);
     if (!/^[A-Za-z_]/.test(name)) return null;
-    const told = await ask("explain", { draft: state.draft.value, set: "edit", name }).catch(() => ({}));
-    if (!told.answer?.text) return null;
-    return { pos: begin, end, above: true, create: () => ({ dom: card(told.answer) }) };
+    const reply = await ask("explain", { draft: state.draft.value, set: "edit", name }).catch(() => ({}));
+    if (!reply.answer?.text) return null;
+    return { pos: begin, end, above: true, create: () => ({ dom: card(reply.answer) }) };
   },
   { hoverTime: 250 },
 );
 
-function card(told) {
+function card(info) {
   const element = document.createElement("div");
   element.className = "card";
   const add = (tag, text, name) => {
@@ -124,10 +124,10 @@ function card(told) {
     if (name) child.className = name;
     element.append(child);
   };
-  add("p", told.doc);
-  add("pre", told.text);
-  add("p", told.expansion ? "Written out:" : "", "faint");
-  add("pre", told.expansion, "expansion");
+  add("p", info.doc);
+  add("pre", info.text);
+  add("p", info.expansion ? "Written out:" : "", "faint");
+  add("pre", info.expansion, "expansion");
   return element;
 }
 
@@ -143,7 +143,7 @@ const marks = cm.StateField.define({
   provide: (field) => cm.EditorView.decorations.from(field),
 });
 
-/** From a line and column that count from 1 to a place in the text. */
+/** Return the offset in the text of a line and column that count from 1. */
 function placeAt(doc, [row, column]) {
   const line = doc.line(Math.max(1, Math.min(doc.lines, row)));
   return Math.min(line.to, line.from + Math.max(0, column - 1));
@@ -168,15 +168,15 @@ function oneLine(onEnter) {
 }
 
 /**
- * An editor of what `read` gives at any time; `onChange` hears of edits and keeps them at once. `where` names it in mistakes and marks: definitions,
- * formula, watch 1. `line`: one line only, with `onEnter`. `takesFocus`: whether it has the focus at first.
+ * An editor of the text that `read` returns; `onChange` stores each edit at once. `where`: its name in mistakes and
+ * marks (definitions, formula, watch 1). `line`: one line only, with `onEnter`. `takesFocus`: focus it at first.
  */
 export function Editor({ read, onChange, where, label, line = false, onEnter = () => {}, hint = "", takesFocus = false }) {
   const text = read();
   const place = useRef(null);
   const view = useRef(null);
-  const hear = useRef(onChange);
-  hear.current = onChange;
+  const changed = useRef(onChange);
+  changed.current = onChange;
   useEffect(() => {
     const extensions = [
       cm.EditorView.cspNonce.of(document.querySelector("script[nonce]").nonce),
@@ -196,7 +196,7 @@ export function Editor({ read, onChange, where, label, line = false, onEnter = (
       hover,
       marks,
       cm.EditorView.updateListener.of((update) => {
-        if (update.docChanged) hear.current(update.state.doc.toString());
+        if (update.docChanged) changed.current(update.state.doc.toString());
       }),
     ];
     view.current = new cm.EditorView({ doc: text, extensions, parent: place.current });
@@ -204,7 +204,7 @@ export function Editor({ read, onChange, where, label, line = false, onEnter = (
     return () => view.current.destroy();
   }, []);
   useEffect(() => {
-    // What is kept now, not when this was rendered: the user may have typed on.
+    // Compare with the stored text of now, not of the rendering: the user may have typed on.
     const shown = view.current.state.doc.toString();
     const now = read();
     if (shown !== now) view.current.dispatch({ changes: { from: 0, to: shown.length, insert: now } });
@@ -221,16 +221,16 @@ export function Editor({ read, onChange, where, label, line = false, onEnter = (
       });
     view.current.dispatch(cm.setDiagnostics(view.current.state, diagnostics));
   }, [mistakes, where]);
-  const found = state.marks.value;
+  const placed = state.marks.value;
   useEffect(() => {
     const doc = view.current.state.doc;
-    const spans = found
+    const spans = placed
       .filter((x) => x.where === where)
       .map((x) => [placeAt(doc, x.from), placeAt(doc, x.to), x.kind])
       .filter(([from, to]) => to > from)
       .sort((a, b) => a[0] - b[0] || a[1] - b[1]);
     const made = spans.map(([from, to, kind]) => cm.Decoration.mark({ class: `mark-${kind}` }).range(from, to));
     view.current.dispatch({ effects: setMarks.of(cm.Decoration.set(made)) });
-  }, [found, where]);
+  }, [placed, where]);
   return html`<div class=${line ? "editor line" : "editor"} ref=${place}></div>`;
 }

@@ -1,4 +1,4 @@
-// The left edge: scenarios with small pictures, and the user's files. On narrow screens it is a drawer.
+// The gallery at the left: scenarios with small pictures, and the user's files; a drawer on narrow screens.
 
 import { effect, html, signal, useRef } from "vendor/view";
 import * as actions from "studio/actions";
@@ -8,19 +8,19 @@ import { ask } from "studio/server";
 import * as state from "studio/state";
 import { recall, remember } from "studio/store";
 
-const WIDE = 1180; // pixels from which there is room for it beside the other panes
-const SHARE = 4; // scenarios that are asked for at once
+const WIDE = 1180; // px of the window from which the gallery fits beside the other panes
+const SHARE = 4; // scenarios in one request
 const FIRST = 1;
 
 const cards = signal(new Map()); // of the chosen set, by number
-const touched = signal(null); // the number of the card that plays
+const playing = signal(null); // the number of the card that plays
 export const isOpen = signal(isBeside() && recall("gallery", true));
 
 function isBeside() {
   return matchMedia(`(min-width: ${WIDE}px)`).matches;
 }
 
-/** Show or hide it; as a drawer it takes the focus, and gives it back. */
+/** Show or hide the gallery; as a drawer it takes the focus, and gives it back. */
 export function toggleGallery() {
   isOpen.value = !isOpen.value;
   if (isBeside()) remember("gallery", isOpen.value);
@@ -32,52 +32,52 @@ function focusGallery() {
   document.querySelector(".gallery .card[tabindex='0']")?.focus();
 }
 
-/** To the card at hand, by keyboard. */
+/** Focus the current card, for the keyboard. */
 export function toGallery() {
   if (isOpen.value) focusGallery();
   else toggleGallery();
 }
 
-/** Load the cards of the chosen set, now and whenever another one is chosen; `play`: begin with scenario 1. */
+/** Load the cards of the chosen set, now and whenever another is chosen; `play`: start with scenario 1. */
 export function followSets(play) {
   let isFirst = play;
-  const known = (set) => set === state.kept.base.peek();
+  const isChosen = (set) => set === state.saved.base.peek();
   const load = async (set, numbers) => {
-    if (!numbers.length || !known(set)) return;
-    const told = await ask("gallery", { draft: { base: set }, scenarios: numbers }).catch(() => ({}));
-    if (!told.answer || !known(set)) return;
-    cards.value = new Map([...cards.value, ...told.answer.cards.map((x) => [x.number, x])]);
+    if (!numbers.length || !isChosen(set)) return;
+    const reply = await ask("gallery", { draft: { base: set }, scenarios: numbers }).catch(() => ({}));
+    if (!reply.answer || !isChosen(set)) return;
+    cards.value = new Map([...cards.value, ...reply.answer.cards.map((x) => [x.number, x])]);
   };
   effect(() => {
-    const set = state.kept.base.value;
+    const set = state.saved.base.value;
     cards.value = new Map();
-    const all = async () => {
+    const loadAll = async () => {
       await load(set, [FIRST]);
       if (isFirst && isUntouched() && cards.peek().get(FIRST)?.drive) {
         show(FIRST);
         forgetSteps();
       }
       isFirst = false;
-      const rest = numbersOf(await state.named()).filter((x) => x !== FIRST);
+      const rest = numbersOf(await state.whenNamesKnown()).filter((x) => x !== FIRST);
       for (let k = 0; k < rest.length; k += SHARE) await load(set, rest.slice(k, k + SHARE));
     };
-    all();
+    loadAll();
   });
 }
 
 function isUntouched() {
-  const { drive, text, formula } = state.kept;
+  const { drive, text, formula } = state.saved;
   const isBlank = drive.peek() === null && text.peek() === "" && formula.peek() === state.FIRST_QUESTION;
   return isBlank && state.view.peek() === null && !state.job.peek();
 }
 
 const numbersOf = (names) => names.scenarios.map((x) => x.number);
 
-/** A scenario as the question, with its drive: the one that is known, or else one that is looked for. */
+/** Make a scenario the question, and show its known drive, or else search for one. */
 function show(number) {
   const card = cards.peek().get(number);
   inOneStep(() => {
-    actions.askAnother(card?.formula ?? String(number));
+    actions.setQuestion(card?.formula ?? String(number));
     if (card?.drive) actions.showFile(card.drive, null, { play: true });
   });
   if (!card?.drive) actions.find();
@@ -106,7 +106,7 @@ export function Gallery() {
   </div>`;
 }
 
-/** Cards by road sector. One of them is in the order of tabs; arrows move to the others. */
+/** The cards by road sector. The Tab key reaches one of them; arrows move to the others. */
 function Cards({ scenarios }) {
   const list = useRef(null);
   const sectors = [...new Set(scenarios.map((x) => x.sector))];
@@ -124,15 +124,15 @@ function Cards({ scenarios }) {
       <summary>${sector || "your scenarios"}</summary>
       ${scenarios
         .filter((x) => x.sector === sector)
-        .map((x) => html`<${Card} key=${x.number} words=${x} isShown=${x.number === shown} isFirst=${x.number === (touched.value ?? shown ?? FIRST)} />`)}
+        .map((x) => html`<${Card} key=${x.number} words=${x} isShown=${x.number === shown} isFirst=${x.number === (playing.value ?? shown ?? FIRST)} />`)}
     </details>`)}
   </div>`;
 }
 
-/** The number of the scenario that is asked about, if it is one. */
+/** Return the number of the scenario that the question is, null for other questions. */
 function scenarioShown(scenarios) {
-  const said = state.about.value.formula?.text ?? state.kept.formula.value;
-  const number = Number(/^scenario_(\d+)\(SV, ?POV\w*, ?/.exec(said)?.[1] ?? said);
+  const text = state.descriptions.value.formula?.text ?? state.saved.formula.value;
+  const number = Number(/^scenario_(\d+)\(SV, ?POV\w*, ?/.exec(text)?.[1] ?? text);
   return scenarios.some((x) => x.number === number) ? number : null;
 }
 
@@ -141,29 +141,29 @@ function Card({ words, isShown, isFirst }) {
   const [what, ...rest] = title.split(", ");
   const picture = cards.value.get(number)?.picture;
   const touch = (on) => () => {
-    if (on) touched.value = number;
-    else if (touched.value === number) touched.value = null;
+    if (on) playing.value = number;
+    else if (playing.value === number) playing.value = null;
   };
   return html`<button class="card" title=${sentence} tabindex=${isFirst ? 0 : -1} aria-current=${isShown ? "true" : undefined}
     aria-label=${`Scenario ${number}: ${title}, ${sector}`} onClick=${() => show(number)}
     onMouseEnter=${touch(true)} onMouseLeave=${touch(false)} onFocus=${touch(true)} onBlur=${touch(false)}>
     <span class="look">${picture
-      ? html`<${Picture} drive=${picture} playing=${touched.value === number && !state.wantsRest()} />`
+      ? html`<${Picture} drive=${picture} playing=${playing.value === number && !state.prefersReducedMotion()} />`
       : html`<span class="blank"></span>`}</span>
     <span class="words"><b>${number}</b> ${what}<small>${rest.join(", ")}</small></span>
   </button>`;
 }
 
-/** Files that the studio was started with, and dropped ones. */
+/** The list of files: those that the studio was started with, and dropped ones. */
 function Files() {
   const { drives, specs } = state;
   const total = drives.value.length + specs.value.length;
-  const shown = JSON.stringify(state.kept.drive.value);
+  const shown = JSON.stringify(state.saved.drive.value);
   return html`<details class="files" open>
     <summary>your files <small>${total || "none"}</small></summary>
     ${total ? null : html`<p class="faint">Drop drives, definitions or recordings on the page, or start <code>roadproof studio FOLDER</code>.</p>`}
     <ul class="specs">${specs.value.map(
-      (x) => html`<li><button title="Put these definitions into the editor" aria-pressed=${x.text === state.kept.text.value} onClick=${() => actions.loadText(x.text)}>${x.name}</button></li>`,
+      (x) => html`<li><button title="Put these definitions into the editor" aria-pressed=${x.text === state.saved.text.value} onClick=${() => actions.loadDefinitions(x.text)}>${x.name}</button></li>`,
     )}</ul>
     <ul class="drives">${drives.value.map(
       (x) => html`<li><button aria-pressed=${JSON.stringify(x.drive) === shown} title=${x.drive.formula ?? ""} onClick=${() => actions.showFile(x.drive)}>${x.name}</button></li>`,

@@ -1,4 +1,4 @@
-// Undo and redo for all that the page keeps: texts, question, options and the drive.
+// Undo and redo for the saved state of the page: texts, question, options and the drive.
 
 import { batch, effect, signal } from "vendor/view";
 import * as state from "studio/state";
@@ -10,75 +10,75 @@ export const canUndo = signal(false);
 export const canRedo = signal(false);
 let past = [];
 let future = [];
-let settled = null; // what the last step ended with
-let latest = null; // what is kept now
+let committed = null; // the state at the end of the last step
+let latest = null; // the present state
 let timer = 0;
 
-/** Begin to take down what changes. */
+/** Start to record changes. */
 export function followChanges() {
-  latest = settled = state.asData();
+  latest = committed = state.savedData();
   effect(() => {
-    const now = state.asData();
-    if (now.drive !== latest.drive) settle();
+    const now = state.savedData();
+    if (now.drive !== latest.drive) endStep();
     latest = now;
     clearTimeout(timer);
-    timer = setTimeout(settle, PAUSE);
+    timer = setTimeout(endStep, PAUSE);
   });
 }
 
-/** Begin with what is kept now; nothing before it can be undone. */
+/** Forget all steps; nothing before now can be undone. */
 export function forgetSteps() {
   clearTimeout(timer);
   past = [];
   future = [];
-  latest = settled = state.asData();
-  tell();
+  latest = committed = state.savedData();
+  updateButtons();
 }
 
-/** End a step, such as before what was typed is replaced. */
-export function settle() {
+/** End the present step, such as before typed text is replaced. */
+export function endStep() {
   clearTimeout(timer);
-  if (latest === null || isSame(latest, settled)) return;
-  past = [...past, settled].slice(-MOST);
+  if (latest === null || isSame(latest, committed)) return;
+  past = [...past, committed].slice(-MOST);
   future = [];
-  settled = latest;
-  tell();
+  committed = latest;
+  updateButtons();
 }
 
-/** Replace what is kept in one step, which can be undone. */
+/** Change the state in one step, which can be undone. */
 export function inOneStep(change) {
-  settle();
+  endStep();
   batch(change);
 }
 
 export function undo() {
-  settle();
+  endStep();
   if (!past.length) return;
-  future = [settled, ...future];
+  future = [committed, ...future];
   restore(past.at(-1));
   past = past.slice(0, -1);
-  tell();
+  updateButtons();
 }
 
 export function redo() {
-  settle();
+  endStep();
   if (!future.length) return;
-  past = [...past, settled];
+  past = [...past, committed];
   restore(future[0]);
   future = future.slice(1);
-  tell();
+  updateButtons();
 }
 
 function restore(data) {
-  settled = data;
-  latest = data; // so that the effect takes it for no change
+  committed = data;
+  latest = data; // so the effect sees no change
   batch(() => {
-    if (data.drive !== state.kept.drive.peek()) state.fromTheStart();
-    state.takeOver(data);
+    if (data.drive !== state.saved.drive.peek()) state.resetView();
+    state.applyState(data);
   });
 }
 
-function tell() {
+function updateButtons() {
   canUndo.value = past.length > 0;
   canRedo.value = future.length > 0;
 }

@@ -1,4 +1,4 @@
-// Each edit is read and judged again, one question at a time and always the latest.
+// Reads and judges each edit again: one question at a time, and always the latest.
 
 import { batch, effect } from "vendor/view";
 import { showPair } from "studio/actions";
@@ -6,23 +6,23 @@ import { ask } from "studio/server";
 import * as state from "studio/state";
 
 const PATIENCE = 25; // ms after the last key
-const LONGER = 500; // the same, for what nobody waits for, and where a recording is read again
+const LONGER = 500; // ms, for names, which nobody waits for, and for recordings, which take long
 
-/** Ask `kind` whenever `question` changes; `take` gets the latest answer, `fail` why there is none. */
+/** Ask `kind` whenever `question` changes; `take` gets the latest answer, `fail` the reason why there is none. */
 function follow(kind, question, take, fail, patience = PATIENCE) {
-  let wanted = null;
+  let pending = null;
   let busy = false;
   let timer = 0;
   const next = async () => {
-    if (busy || wanted === null) return;
+    if (busy || pending === null) return;
     busy = true;
-    const asked = wanted;
-    wanted = null;
+    const sent = pending;
+    pending = null;
     try {
-      const told = await ask(kind, asked);
-      if (wanted === null) {
-        if (told.error) fail(told.error);
-        else take(told.answer, asked);
+      const reply = await ask(kind, sent);
+      if (pending === null) {
+        if (reply.error) fail(reply.error);
+        else take(reply.answer, sent);
       }
     } catch (error) {
       fail(error.message);
@@ -32,28 +32,28 @@ function follow(kind, question, take, fail, patience = PATIENCE) {
   };
   let isFirst = true;
   effect(() => {
-    wanted = question();
+    pending = question();
     clearTimeout(timer);
     timer = setTimeout(next, isFirst ? 0 : patience);
     isFirst = false;
   });
 }
 
-/** Begin: mistakes, names and strips follow what is typed. */
+/** Keep mistakes, names and strips up to date with the texts. */
 export function followEdits() {
   follow(
     "read",
     () => {
       const { draft, set, formula } = state.question.value;
-      const watches = Object.fromEntries(state.kept.watches.value.map((x, k) => [`watch ${k + 1}`, x]));
-      const said = Object.fromEntries(Object.entries(watches).filter(([, x]) => x.trim()));
-      return { draft, set, formulas: { formula, ...said } };
+      const watches = Object.fromEntries(state.saved.watches.value.map((x, k) => [`watch ${k + 1}`, x]));
+      const filled = Object.fromEntries(Object.entries(watches).filter(([, x]) => x.trim()));
+      return { draft, set, formulas: { formula, ...filled } };
     },
     (answer) => {
       state.mistakes.value = answer.mistakes;
-      state.about.value = answer.formulas;
+      state.descriptions.value = answer.formulas;
     },
-    (reason) => (state.trouble.value = reason),
+    (reason) => (state.errorText.value = reason),
   );
   follow(
     "names",
@@ -75,17 +75,17 @@ export function followEdits() {
   follow(
     "show",
     () => {
-      const drive = state.kept.drive.value;
+      const drive = state.saved.drive.value;
       if (drive === null) return null;
-      const compare = state.kept.compared.value;
+      const compare = state.saved.compared.value;
       return { ...state.question.value, drive, compare, explain: state.explain.value };
     },
-    (answer, asked) => {
-      if (asked.drive !== state.kept.drive.peek()) return;
+    (answer, sent) => {
+      if (sent.drive !== state.saved.drive.peek()) return;
       batch(() => {
         state.view.value = answer.view;
-        if (state.plays.peek()) state.look.playing.value = true;
-        state.plays.value = false;
+        if (state.autoplay.peek()) state.look.playing.value = true;
+        state.autoplay.value = false;
       });
     },
     () => {},

@@ -1,37 +1,37 @@
-// A small picture of a drive: the road from above, the first vehicle always at the same place.
+// A small picture of a drive: the road from above, with the first vehicle always at the same place.
 
 import { html, useEffect, useSignal } from "vendor/view";
-import { acrossOf, keptAt, stateAt, windowOf } from "viewer/drive";
+import { acrossOf, requiredAt, stateAt, windowOf } from "viewer/drive";
 
 const WIDTH = 132;
 const LANE = 3; // pixels a metre across
 const EDGE = 2;
 const LINE = 0.8; // pixels between lanes
 const SHORTEST = 7; // pixels of a vehicle
-const INTO = 0.4; // seconds after the begin of danger
+const AFTER = 0.4; // seconds after danger begins, at which the picture stands
 const REST = 0.8; // seconds between two plays
 
-/** The picture of `drive`; it stands where danger has begun, and plays again and again while `playing`. */
+/** The picture of `drive`: it stands just after danger begins, and plays in a loop while `playing`. */
 export function Picture({ drive, playing }) {
   const danger = drive.dangers[0];
-  const still = danger ? Math.min(drive.horizon, danger.begins + INTO) : drive.horizon / 2;
+  const still = danger ? Math.min(drive.horizon, danger.begins + AFTER) : drive.horizon / 2;
   const time = useSignal(still);
   useEffect(() => {
     if (!playing) {
       time.value = still;
       return undefined;
     }
-    const begun = performance.now();
+    const started = performance.now();
     let frame = 0;
     const step = (now) => {
-      const passed = ((now - begun) / 1000) % (drive.horizon + REST);
+      const passed = ((now - started) / 1000) % (drive.horizon + REST);
       time.value = Math.min(drive.horizon, Math.max(0, passed));
       frame = requestAnimationFrame(step);
     };
     frame = requestAnimationFrame(step);
     return () => cancelAnimationFrame(frame);
   }, [playing, drive]);
-  const place = placing(drive, time.value);
+  const place = projection(drive, time.value);
   return html`<svg class="picture" viewBox=${`0 0 ${WIDTH} ${place.height.toFixed(1)}`} aria-hidden="true">
     ${drive.road.lanelets.map((x) => html`<${Lanelet} lanelet=${x} place=${place} />`)}
     ${drive.distances.filter((x) => x.direction === "along").map((x) => html`<${Envelope} ...${{ drive, place, distance: x, time: time.value }} />`)}
@@ -39,8 +39,8 @@ export function Picture({ drive, playing }) {
   </svg>`;
 }
 
-/** From metres to pixels at a time. */
-function placing(drive, time) {
+/** Return functions from metres to px at a time. */
+function projection(drive, time) {
   const [low, high] = windowOf(drive);
   const [right, left] = acrossOf(drive.road);
   const origin = stateAt(Object.values(drive.vehicles)[0], time).s;
@@ -62,9 +62,9 @@ function Lanelet({ lanelet, place }) {
   return html`<rect class=${lanelet.zone} x=${x} y=${top + LINE / 2} width=${end - x} height=${bottom - top - LINE} />`;
 }
 
-/** The RSS distance in front of the one behind, stronger where the gap is smaller. */
+/** The RSS distance in front of the vehicle behind, darker where the gap is smaller. */
 function Envelope({ drive, place, distance, time }) {
-  const { keeper, needed, gap } = keptAt(drive, distance, time);
+  const { keeper, needed, gap } = requiredAt(drive, distance, time);
   if (needed === null || needed <= 0) return null;
   const vehicle = drive.vehicles[keeper];
   const { s, d } = stateAt(vehicle, time);

@@ -1,4 +1,4 @@
-// Questions that were asked, with their verdicts, kept in the browser; and examples.
+// Recent questions with their verdicts, stored in the browser, and examples.
 
 import { html, signal } from "vendor/view";
 import { toneOf } from "viewer/verdict";
@@ -8,27 +8,27 @@ import * as state from "studio/state";
 import { recall, remember } from "studio/store";
 
 const MOST = 12;
-const LONGEST = 20_000; // characters of definitions that are kept with a question
+const LONGEST = 20_000; // characters of definitions that are stored with a question
 const FIELDS = ["formula", "base", "text", "options", "params"];
 const JOBS = ["find", "without", "prove"];
 
 export const examples = signal([]);
-const recent = signal(readable(recall("recent", [])));
+const recent = signal(validEntries(recall("recent", [])));
 
-/** What was kept, as far as it is ours: anything may be in the storage of a browser. */
-function readable(list) {
+/** Return the valid entries of a stored list: anything may be in the storage of a browser. */
+function validEntries(list) {
   const isOurs = (x) => typeof x?.formula === "string" && typeof x.verdict === "string" && JOBS.includes(x.job);
   return (Array.isArray(list) ? list : []).filter(isOurs).slice(0, MOST);
 }
 
-/** What a question is about now, to be kept with its verdict later. */
-export function questionNow(job) {
-  const kept = Object.fromEntries(FIELDS.map((name) => [name, state.kept[name].peek()]));
-  return { job, ...kept, text: kept.text.length > LONGEST ? null : kept.text };
+/** Return the present question, to be stored with its verdict later. */
+export function currentQuestion(job) {
+  const saved = Object.fromEntries(FIELDS.map((name) => [name, state.saved[name].peek()]));
+  return { job, ...saved, text: saved.text.length > LONGEST ? null : saved.text };
 }
 
-/** Keep a question that was answered; the same one is kept once. */
-export function keepQuestion(question, verdict) {
+/** Store an answered question; equal ones are stored once. */
+export function storeQuestion(question, verdict) {
   const same = (x) => JSON.stringify({ ...x, verdict: "" }) === JSON.stringify({ ...question, verdict: "" });
   recent.value = [{ ...question, verdict }, ...recent.value.filter((x) => !same(x))].slice(0, MOST);
   remember("recent", recent.value);
@@ -36,17 +36,17 @@ export function keepQuestion(question, verdict) {
 
 function restore(question) {
   inOneStep(() => {
-    actions.askAnother(question.formula);
+    actions.setQuestion(question.formula);
     const { text, base, options, params } = question;
-    state.takeOver({ base, options, params, ...(text === null ? {} : { text }) });
+    state.applyState({ base, options, params, ...(text === null ? {} : { text }) });
   });
 }
 
-/** Examples to click, and what was asked last. */
+/** The pane with examples and recent questions. */
 export function Try() {
-  const isPlain = !state.kept.text.value.trim() && state.kept.base.value === "base";
+  const isPlain = !state.saved.text.value.trim() && state.saved.base.value === "base";
   const askExample = (x) => {
-    inOneStep(() => actions.askAnother(x.formula));
+    inOneStep(() => actions.setQuestion(x.formula));
     if (x.job === "prove") actions.prove();
     else actions.find();
   };

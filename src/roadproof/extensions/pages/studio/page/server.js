@@ -1,25 +1,25 @@
-// Questions to the server: POST with the token, answered by JSON lines.
+// Sends questions to the server: POST with the token; the answer is JSON lines.
 
 import { recall, remember } from "studio/store";
 
 const KEY = "token";
 let token = "";
 
-/** Take the token out of the address, so that it is not copied with it; a bookmark uses the last one. */
+/** Move the token out of the address, so it is not copied with it; bookmarks use the last token. */
 export function takeToken() {
-  const found = new URLSearchParams(location.hash.slice(1));
-  token = found.get("token") ?? recall(KEY, "");
-  if (found.has("token")) {
+  const fragment = new URLSearchParams(location.hash.slice(1));
+  token = fragment.get("token") ?? recall(KEY, "");
+  if (fragment.has("token")) {
     remember(KEY, token);
-    found.delete("token");
-    history.replaceState(history.state, "", `${location.pathname}#${found}`);
+    fragment.delete("token");
+    history.replaceState(history.state, "", `${location.pathname}#${fragment}`);
   }
   return token;
 }
 
 const HEADERS = () => ({ "content-type": "application/json", "x-roadproof-token": token });
 
-/** What the server was started with. Throws an Error with words for the user. */
+/** Return the content that the page starts with. Throws an Error with a message for the user. */
 export async function start() {
   const answer = await fetch("/start", { method: "POST", headers: HEADERS(), body: "{}" });
   const data = await answer.json();
@@ -28,27 +28,27 @@ export async function start() {
 }
 
 /**
- * The answer to a question: {answer} or {error}, with seconds. `hear` is told of stages meanwhile; aborting
- * `signal` ends the job. Throws an Error where the server is not there or refuses.
+ * Return the answer to a question: {answer} or {error}, with seconds. `onMessage` gets the stages meanwhile; aborting
+ * `signal` ends the job. Throws an Error where the server does not respond or refuses.
  */
-export async function ask(kind, question, { hear = () => {}, signal } = {}) {
+export async function ask(kind, question, { onMessage = () => {}, signal } = {}) {
   const body = JSON.stringify({ kind, ...question });
   const reply = await fetch("/ask", { method: "POST", headers: HEADERS(), body, signal });
   if (!reply.ok) throw new Error((await reply.json()).error);
   const reader = reply.body.getReader();
-  const words = new TextDecoder();
+  const decoder = new TextDecoder();
   let rest = "";
   let last = null;
   for (;;) {
     const { value, done } = await reader.read();
     if (done && last) return last;
     if (done) throw new Error("the server ended before it had answered");
-    const lines = (rest + words.decode(value, { stream: true })).split("\n");
+    const lines = (rest + decoder.decode(value, { stream: true })).split("\n");
     rest = lines.pop();
     for (const line of lines) {
       const message = JSON.parse(line);
       if ("answer" in message || "error" in message) last = message;
-      else hear(message);
+      else onMessage(message);
     }
   }
 }

@@ -8,7 +8,7 @@ import { Try } from "studio/recent";
 import * as state from "studio/state";
 
 export function Side() {
-  const { kept } = state;
+  const { saved } = state;
   const wrong = state.mistakes.value.filter((x) => x.where === "definitions");
   const answers = useRef(null);
   const newest = state.answers.value[0]?.key;
@@ -17,16 +17,16 @@ export function Side() {
   }, [newest]);
   return html`<aside class="side">
     <section class="pane definitions" aria-label="Definitions">
-      <h2>Definitions <small>set <code>edit</code> on top of <code>${kept.base.value}</code></small>
+      <h2>Definitions <small>set <code>edit</code> on top of <code>${saved.base.value}</code></small>
         <span class="right">
-          ${kept.before.value === null
+          ${saved.before.value === null
             ? html`<button title="b: what the next edit is compared with" onClick=${actions.keepAsBefore}>Keep as before</button>`
             : html`<button title="Compare with the set below again" onClick=${actions.forgetBefore}>Forget before</button>`}
         </span>
       </h2>
-      <${Editor} where="definitions" label="Definitions" read=${() => kept.text.value}
+      <${Editor} where="definitions" label="Definitions" read=${() => saved.text.value}
         hint=${"def danger(a, b: vehicle) \"what replaces the definition of the set\"\n  := …"}
-        onChange=${actions.rewrite} />
+        onChange=${actions.setDefinitions} />
       ${wrong.length
         ? html`<ul class="mistakes" role="alert">
             ${wrong.map((x) => html`<li><b>${x.at ? x.at[0].join(":") : ""}</b> ${x.message} <span class="faint">${x.hint}</span></li>`)}
@@ -36,8 +36,8 @@ export function Side() {
     <${Readings} />
     <section class="pane watch" aria-label="Watch">
       <h2>Watch <span class="right"><button onClick=${addWatch}>Add</button></span></h2>
-      ${kept.watches.value.map((_, k) => html`<${WatchLine} key=${k} ...${{ k }} />`)}
-      ${kept.watches.value.length ? null : html`<p class="faint">Any formula typed here gets a strip on the drive that is shown.</p>`}
+      ${saved.watches.value.map((_, k) => html`<${WatchLine} key=${k} ...${{ k }} />`)}
+      ${saved.watches.value.length ? null : html`<p class="faint">Any formula typed here gets a strip on the drive that is shown.</p>`}
     </section>
     <${Recording} />
     <section class="pane answers" aria-label="Answers" ref=${answers}>
@@ -52,16 +52,16 @@ export function Side() {
   </aside>`;
 }
 
-/** Readings and values of parameters, folded away at first. */
+/** Readings and parameter values, folded at first. */
 function Readings() {
-  const { options, params } = state.kept;
+  const { options, params } = state.saved;
   const known = state.names.value;
   if (!known) return null;
-  const set = (kept, name, value) => {
-    const next = { ...kept.value };
+  const set = (values, name, value) => {
+    const next = { ...values.value };
     if (value) next[name] = value;
     else delete next[name];
-    kept.value = next;
+    values.value = next;
   };
   const wrong = state.mistakes.value.find((x) => x.where === "parameters");
   const changed = [...Object.entries(options.value), ...Object.entries(params.value)];
@@ -81,24 +81,24 @@ function Readings() {
   </details>`;
 }
 
-/** The pairs of a recording on which danger arises, and which scenarios match them. */
+/** The pairs of a recording on which danger arises, with the matching scenarios. */
 function Recording() {
-  const found = state.recording.value;
-  if (!found) return null;
+  const recording = state.recording.value;
+  if (!recording) return null;
   const scenariosOf = (row) => {
     const same = (m) =>
       String(m.recording) === String(row.recording) &&
       m.minDanger === row.minDanger &&
       [m.SV, m.POV].sort().join() === [row.first, row.second].sort().join();
-    return found.matches.filter(same);
+    return recording.matches.filter(same);
   };
   return html`<section class="pane recording" aria-label="Recording">
-    <h2>Recording <small>${found.pairs.length} traces on which danger arises, ${found.matches.length} matches</small>
+    <h2>Recording <small>${recording.pairs.length} traces on which danger arises, ${recording.matches.length} matches</small>
       <span class="right"><button aria-label="Close the recording" onClick=${() => (state.recording.value = null)}>×</button></span>
     </h2>
     <div class="table"><table>
       <thead><tr><th>vehicles</th><th>frames</th><th>minDanger</th><th>scenarios</th></tr></thead>
-      <tbody>${found.pairs.map((row) => {
+      <tbody>${recording.pairs.map((row) => {
         const matches = scenariosOf(row);
         const show = (sv, pov, number) => actions.showPair({ ...row, vehicles: [sv, pov] }, number);
         return html`<tr>
@@ -113,28 +113,28 @@ function Recording() {
 }
 
 function WatchLine({ k }) {
-  const { kept } = state;
+  const { saved } = state;
   const wrong = state.mistakes.value.find((x) => x.where === `watch ${k + 1}`);
   const change = (value) => {
-    state.kept.watches.value = state.kept.watches.value.map((x, n) => (n === k ? value : x));
+    state.saved.watches.value = state.saved.watches.value.map((x, n) => (n === k ? value : x));
   };
   const remove = () => {
-    state.kept.watches.value = state.kept.watches.value.filter((_, n) => n !== k);
+    state.saved.watches.value = state.saved.watches.value.filter((_, n) => n !== k);
   };
   return html`<div class="watched">
-    <${Editor} where=${`watch ${k + 1}`} label=${`Watched formula ${k + 1}`} line=${true} read=${() => kept.watches.value[k] ?? ""} onChange=${change} hint="v_lon(SV) > 100 km/h" takesFocus=${(kept.watches.value[k] ?? "") === ""} />
+    <${Editor} where=${`watch ${k + 1}`} label=${`Watched formula ${k + 1}`} line=${true} read=${() => saved.watches.value[k] ?? ""} onChange=${change} hint="v_lon(SV) > 100 km/h" takesFocus=${(saved.watches.value[k] ?? "") === ""} />
     <button aria-label="Remove" onClick=${remove}>×</button>
     ${wrong ? html`<p class="wrong">${wrong.message}</p>` : null}
   </div>`;
 }
 
 export function addWatch() {
-  state.kept.watches.value = [...state.kept.watches.value, ""];
+  state.saved.watches.value = [...state.saved.watches.value, ""];
 }
 
 const drivesOf = (answer) => answer.drives ?? (answer.drive ? [answer.drive] : []);
 
-/** Its drives to be shown, all of them where there are several; the view at hand is that of `drive`. */
+/** Return buttons that show the drives of an answer; its view is that of the last drive. */
 function showsOf(answer) {
   const isCompared = answer.sets !== undefined;
   return drivesOf(answer).map((drive, k, { length }) => ({
@@ -143,14 +143,14 @@ function showsOf(answer) {
   }));
 }
 
-/** What an answer cost, in words: now, and when it was computed. */
+/** Return the cost of an answer in words: now, and when it was computed. */
 function costOf({ cost, cpu, seconds }) {
   if (cpu === undefined || seconds === undefined) return "";
-  const told = [`${shownSeconds(seconds)} (processor ${shownSeconds(cpu)})`];
-  if (cost?.known) told.push(`known: ${KNOWN[cost.known]}`);
-  if (cost?.known && cost.seconds > 0) told.push(`computed in ${shownSeconds(cost.seconds)} then`);
-  if (cost?.effort) told.push(`${shownNumber(cost.effort)} units of effort`);
-  return told.join(" · ");
+  const parts = [`${shownSeconds(seconds)} (processor ${shownSeconds(cpu)})`];
+  if (cost?.known) parts.push(`known: ${KNOWN[cost.known]}`);
+  if (cost?.known && cost.seconds > 0) parts.push(`computed in ${shownSeconds(cost.seconds)} then`);
+  if (cost?.effort) parts.push(`${shownNumber(cost.effort)} units of effort`);
+  return parts.join(" · ");
 }
 
 const KNOWN = { shipped: "shipped with roadproof", cache: "of an earlier run of yours" };

@@ -1,11 +1,11 @@
-// What the browser keeps for the page. Where it keeps nothing, the page forgets at its end.
+// Stores data in the browser; where that is denied, only for as long as the page is open.
 
 const PREFIX = "roadproof-";
-const held = new Map();
+const memory = new Map();
 
-/** The value that was kept under a name, or `other`. */
+/** Return the value stored under a name, or `other`. */
 export function recall(name, other = null) {
-  if (held.has(name)) return held.get(name);
+  if (memory.has(name)) return memory.get(name);
   try {
     return JSON.parse(localStorage.getItem(PREFIX + name)) ?? other;
   } catch {
@@ -13,12 +13,12 @@ export function recall(name, other = null) {
   }
 }
 
-/** Keep plain data under a name. */
+/** Store plain data under a name. */
 export function remember(name, value) {
-  held.set(name, value);
+  memory.set(name, value);
   try {
     localStorage.setItem(PREFIX + name, JSON.stringify(value));
   } catch {
-    // Denied or full: `held` has it for as long as the page is open.
+    // Denied or full: `memory` stores it for as long as the page is open.
   }
 }

@@ -1,9 +1,9 @@
-// A short tour of the page. It is shown to newcomers, and whenever it is asked for; Escape ends it.
+// A short tour of the page, shown to newcomers and on request; Escape ends it.
 
 import { html, signal, useEffect, useLayoutEffect, useRef, useState } from "vendor/view";
 import { recall, remember } from "studio/store";
 
-// Each step points at the first of its places that is seen.
+// Each step points at the first of its places that is visible.
 const STEPS = [
   {
     at: [".gallery .cards", ".gallery-switch"],
@@ -40,36 +40,36 @@ const WIDTH = 320; // pixels of the card
 const GAP = 12;
 
 const step = signal(null); // the number of the step that is shown
-let before = null; // what had the focus
+let focusedBefore = null; // the element that had the focus
 
 export function startTour() {
-  before = document.activeElement;
+  focusedBefore = document.activeElement;
   step.value = 0;
 }
 
-/** Begin for those who have not seen it. */
+/** Start the tour for users without a stored mark of it. */
 export function welcome() {
   if (!recall("tour")) startTour();
 }
 
-/** End it for good; whether there was one. */
+/** End the tour for good; return whether it was running. */
 export function endTour() {
   if (step.peek() === null) return false;
   step.value = null;
   remember("tour", "seen");
-  if (before?.isConnected) before.focus();
+  if (focusedBefore?.isConnected) focusedBefore.focus();
   return true;
 }
 
-function isSeen(element) {
+function isVisible(element) {
   const box = element?.getBoundingClientRect();
   return Boolean(box && box.width && box.height);
 }
 
-const placeOf = (number) => STEPS[number].at.map((x) => document.querySelector(x)).find(isSeen);
+const placeOf = (number) => STEPS[number].at.map((x) => document.querySelector(x)).find(isVisible);
 
-/** Where a card stands beside a box: right of it, left of it, or below all on a narrow screen. */
-function beside(box, height) {
+/** Return the place of a card beside a box: right of it, left of it, or at the bottom of a narrow screen. */
+function cardPlace(box, height) {
   if (!box || innerWidth < 2 * WIDTH) return { left: GAP, bottom: GAP, right: GAP };
   const top = Math.max(GAP, Math.min(innerHeight - height - GAP, box.top));
   if (box.right + WIDTH + GAP < innerWidth) return { left: box.right + GAP, top };
@@ -109,9 +109,9 @@ function Step({ number }) {
     event.stopPropagation();
     act();
   };
-  const seen = box?.right > box?.left ? box : null;
-  const frame = seen && { left: seen.left, top: seen.top, width: seen.right - seen.left, height: seen.bottom - seen.top };
-  const at = beside(seen, card.current?.offsetHeight ?? 180);
+  const visible = box?.right > box?.left ? box : null;
+  const frame = visible && { left: visible.left, top: visible.top, width: visible.right - visible.left, height: visible.bottom - visible.top };
+  const at = cardPlace(visible, card.current?.offsetHeight ?? 180);
   return html`<div class="tour" role="dialog" aria-labelledby="tour-title" aria-describedby="tour-text" onKeyDown=${onKey}>
     ${frame ? html`<div class="frame" style=${pixels(frame)}></div>` : null}
     <div class="card" ref=${card} style=${pixels(at)}>

@@ -1,4 +1,4 @@
-// What the editor of the studio stands on: CodeMirror 6.
+// The library of the studio's editor: CodeMirror 6.
 export { Compartment, EditorState, StateEffect, StateField, RangeSetBuilder } from "@codemirror/state";
 export {
   Decoration,

@@ -1,4 +1,4 @@
-// What the viewer and the studio stand on: preact, signals, htm, uPlot.
+// The libraries of the viewer and the studio: preact, signals, htm, uPlot.
 import htm from "htm";
 import { h } from "preact";
 

@@ -1,0 +1,1 @@
+"""Readers of the files of answers, one for each kind of evidence."""
