@@ -5,6 +5,7 @@ What is in a folder is read from the folder: links are refused, and so is a file
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +36,10 @@ from roadproof.questions.question import (
     HasUnknowns,
     Linkable,
     Question,
+    QuestionBatch,
+    require_place,
     walk_batch,
+    work_of,
 )
 from roadproof.reasons import NO_REASON, ReasonKind
 from roadproof.runtime.records import dataclass
@@ -166,7 +170,7 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     missing: set[str] = set()
     refused: set[str] = set()
 
-    def find(name: str, claim: Claim) -> ClaimAnswer:
+    def find(batch: QuestionBatch, name: str, claim: Claim) -> ClaimAnswer:
         """Return the answer in the file of a claim, judged again."""
         if name not in answers:
             path = there.pop(name, None)
@@ -176,7 +180,9 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
             try:
                 content = None if path is None else _content(path)
                 outcome = Acceptance.REJECTED
-                answers[name] = _read(claim, content, str(path))
+                answer = _read(claim, content, str(path))
+                require_place(answer, work_of(question.work, batch, name), str(path))
+                answers[name] = answer
             except InputError as error:
                 fault = ReasonKind.TOLD(error)
                 where = str(folder / f"{name}.json")
@@ -190,7 +196,7 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     while new := [x for x in question.batches(answers) if x.name not in seen]:
         for batch in new:
             seen.add(batch.name)
-            [*walk_batch(batch, find)]
+            [*walk_batch(batch, partial(find, batch))]
     problems += [
         Finding(str(path), "", Acceptance.REJECTED, ReasonKind.NOT_ITS_ANSWER()) for path in there.values()
     ]

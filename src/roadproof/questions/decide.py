@@ -16,14 +16,13 @@ from roadproof.questions.question import (
     Answers,
     EarlierAnswers,
     Growing,
-    OwnWork,
     Proposing,
     Question,
     QuestionBatch,
     Seeded,
-    WorkByName,
     walk_batch,
     walk_with_earlier,
+    work_of,
 )
 from roadproof.questions.store import Store, keep_all
 from roadproof.runtime.archives import Origin, is_off, origins_in_words
@@ -264,9 +263,7 @@ class _Run:
 
 def store_of(batch: QuestionBatch, store: Store, name: str) -> Store:
     """Return the store with the work for a claim, where a batch has another than its question."""
-    if isinstance(batch, WorkByName):
-        return replace(store, work=batch.work_of(name))
-    return replace(store, work=batch.work) if isinstance(batch, OwnWork) else store
+    return replace(store, work=work_of(store.work, batch, name))
 
 
 @dataclass(frozen=True)

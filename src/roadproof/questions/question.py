@@ -6,8 +6,9 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol, Self, TypeAlias, TypeVar, runtime_checkable
 
 from roadproof.engines.modifier import find_modifier
+from roadproof.errors import InputError
 from roadproof.evidence.answer import ClaimAnswer
-from roadproof.evidence.claim import Claim
+from roadproof.evidence.claim import Claim, Exists
 from roadproof.reasons import Reason
 from roadproof.runtime.canonical import digest
 
@@ -162,6 +163,38 @@ class Annotating(Protocol):
 
     def annotate(self, name: str, answer: ClaimAnswer, finding: Finding) -> Finding:
         """Return what was found, with what the answer shows."""
+
+
+def work_of(usual: Work, batch: QuestionBatch, name: str) -> Work:
+    """Return the work for a claim: the ``usual`` work of the question, unless its batch has another."""
+    if isinstance(batch, WorkByName):
+        return batch.work_of(name)
+    return batch.work if isinstance(batch, OwnWork) else usual
+
+
+def require_place(answer: ClaimAnswer, work: Work, where: str) -> None:
+    """Require the road, the lanes and the boxes that a claim asks for, unless drives are moved.
+
+    Raises ``InputError``, which names ``where`` the drive is.
+    """
+    mode, judged = answer.claim.mode, answer.drive
+    moves = work.moves and not work.alone
+    if moves or judged is None or not isinstance(mode, Exists):
+        return
+    file = judged.file
+    if mode.road is not None and file.road != mode.road:
+        raise InputError(f"{where}: its drive is on road {file.road.name!r}, and another one is asked for")
+    for variable, lane in mode.lanes.items():
+        if file.lanes.get(variable) != lane:
+            raise InputError(f"{where}: {variable} is {file.lanes.get(variable)} on its drive, not {lane}")
+    for name, motion in file.drive.vehicles.items():
+        model = mode.vehicles.get(name, mode.vehicles.get(""))
+        if model is not None and (motion.kind, motion.length, motion.width) != (
+            model.kind,
+            model.length,
+            model.width,
+        ):
+            raise InputError(f"{where}: {name} has not the kind, length and width of {model.name}")
 
 
 def walk_batch(

@@ -22,7 +22,7 @@ from roadproof.evidence.claim import Claim
 from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
 from roadproof.library.specification import Specification
 from roadproof.questions.foreign_code import foreign_code
-from roadproof.questions.question import QUESTION, Answers, EarlierAnswers, Question
+from roadproof.questions.question import QUESTION, Answers, EarlierAnswers, Question, require_place
 from roadproof.runtime.archives import CACHE, JUDGED, Origin, recall, remember
 from roadproof.runtime.budget import Work
 from roadproof.runtime.cache import evict_old
@@ -130,10 +130,14 @@ class Store:
         return None
 
     def _require_enough(self, answer: ClaimAnswer, path: Path) -> None:
-        """Raises ``InputError`` for a trace, where a drive is to be looked for that refutes it, too."""
+        """Require that as much was looked for as is asked.
+
+        Raises ``InputError`` for a trace where a drive is to be looked for, too, and for a drive elsewhere.
+        """
         shown = answer.evidence
         if isinstance(shown, RefutingTrace) and self.work.seek_drive and not shown.drive_sought:
             raise InputError(f"{path} is a trace, and no drive was looked for")
+        require_place(answer, self.work, str(path))
 
     def whole(self, answer: ClaimAnswer) -> ClaimAnswer:
         """Return an answer as files have it: a certificate with its tableau, if one is found."""
