@@ -27,7 +27,7 @@ class Definition:
         self.known: dict[tuple[Formula, int], bool] = {}
 
     def holds(self, formula: Formula, k: int = 0) -> bool:
-        k = min(k, self.last)
+        k = min(k, self._end(formula))
         if (formula, k) not in self.known:
             self.known[formula, k] = self._holds(formula, k)
         return self.known[formula, k]
@@ -45,22 +45,36 @@ class Definition:
             case f.Application(_, _, body) if formula not in self.given:
                 return self.holds(body, k)
             case f.Eventually(interval, body):
-                return any(self.holds(body, j) for j in self._window(interval, k))
+                return any(self.holds(body, j) for j in self._window(formula, interval, k))
             case f.Always(interval, body):
-                return all(self.holds(body, j) for j in self._window(interval, k))
+                return all(self.holds(body, j) for j in self._window(formula, interval, k))
             case f.Until(left, interval, right):
-                window = self._window(interval, k)
+                window = self._window(formula, interval, k)
                 return any(
                     self.holds(right, j) and all(self.holds(left, i) for i in window[:n])
                     for n, j in enumerate(window)
                 )
-        return self.atom(formula, k)
+            case f.Since(left, interval, right):
+                low, high = bounds_of(interval)
+                past = range(
+                    0 if high is None else max(0, k - int(high / self.dt)), k - int(low / self.dt) + 1
+                )
+                return any(
+                    self.holds(right, j) and all(self.holds(left, i) for i in range(j + 1, past.stop))
+                    for j in past
+                )
+        return self.atom(formula, min(k, self.last))
 
-    def _window(self, interval: f.Interval, k: int) -> range:
-        """The samples in k + interval; those after the last look like it, so one of them is enough."""
+    def _end(self, formula: Formula) -> int:
+        """A sample from which on nothing changes: the last, and all times by which parts look back."""
+        back = [bounds_of(x.interval) for x in f.subformulas(formula) if isinstance(x, f.Since)]
+        return self.last + sum(int((low if high is None else high) / self.dt) for low, high in back)
+
+    def _window(self, formula: Formula, interval: f.Interval, k: int) -> range:
+        """The samples in k + interval; those after the end look like it, so one of them is enough."""
         low, high = bounds_of(interval)
         first = k + int(low / self.dt)
-        beyond = max(first, self.last)
+        beyond = max(first, self._end(formula))
         return range(first, 1 + (beyond if high is None else min(k + int(high / self.dt), beyond)))
 
 

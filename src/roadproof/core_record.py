@@ -28,7 +28,25 @@ READERS: Final[Mapping[str, str]] = {
 """Functions of a claim, the parsed JSON and the path that return evidence, as ``module:name``, by schema."""
 
 _PHRASES = (
-    *("SV", "POV", "POV1", "POV2", "L", "F", "G", "U", "lanes", "lanelets", "zone", "adjacent_lanes"),
+    *(
+        "SV",
+        "POV",
+        "POV1",
+        "POV2",
+        "L",
+        "F",
+        "G",
+        "U",
+        "W",
+        "R",
+        "O",
+        "H",
+        "S",
+        "lanes",
+        "lanelets",
+        "zone",
+        "adjacent_lanes",
+    ),
     *("some", "every", "vehicle", "lane", "parameter", "call"),
 )
 _ERRORS = (

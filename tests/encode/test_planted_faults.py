@@ -39,6 +39,13 @@ search = settings(deadline=None, derandomize=True, max_examples=1000, database=N
 
 
 small_formulas = cases.formulas(leaves=4)
+looking_back_for_ever = st.builds(
+    lambda outer, inner, window, atom: outer(f.FOREVER, inner(window, atom)),
+    st.sampled_from([f.Always, f.Eventually]),
+    st.sampled_from([f.once, f.historically]),
+    cases.bounded,
+    cases.atoms,
+)
 
 
 def unrolling_is_wrong():
@@ -51,15 +58,15 @@ def unrolling_is_wrong():
         return found != cases.holds(formula, trace)
 
     try:
-        find(st.tuples(small_formulas, cases.traces), differs, settings=search)
+        find(st.tuples(small_formulas | looking_back_for_ever, cases.traces), differs, settings=search)
     except NoSuchExample:
         return False
     return True
 
 
-def short_window(self, interval, step):
+def short_window(self, formula, interval, step):
     low, high = self.grid.window(interval)
-    last = self.grid.steps
+    last = self.last(formula)
     first = min(step + low, last)
     return range(first, 1 + (last if high is None else max(first, min(step + high - 1, last))))
 
@@ -72,11 +79,22 @@ def until_asking_for_left_at_the_end(self, left, samples, right, wanted, both, e
     return result
 
 
+def past_one_step_short(self, interval, step):
+    return EARLIER(self, interval, step)[:-1]
+
+
+def past_before_the_start(self, interval, step):
+    """The first sample stands for what was before it."""
+    low, high = self.grid.window(interval)
+    return range(max(0, step - low), -1 if high is None else max(-1, step - high - 1), -1)
+
+
 def until_without_left(self, left, samples, right, wanted, both, either):
     return either([self.at(right, wanted, k) for k in samples])
 
 
 AT = unroll._Unroller._at
+EARLIER = unroll._Unroller._earlier
 
 
 def forgetful_negation(self, formula, wanted, step):
@@ -85,6 +103,9 @@ def forgetful_negation(self, formula, wanted, step):
 
 UNROLLING = {
     "a window one step short": ("_samples", short_window),
+    "windows end with the grid": ("_last", lambda self, formula: self.grid.steps),
+    "a window back is one step short": ("_earlier", past_one_step_short),
+    "a window back begins before the start": ("_earlier", past_before_the_start),
     "until asks for its left side at the end": ("_until", until_asking_for_left_at_the_end),
     "until is eventually": ("_until", until_without_left),
     "polarity is forgotten": ("_at", forgetful_negation),

@@ -33,6 +33,9 @@ def formulas(atoms, leaves=6):
             st.builds(f.Eventually, intervals(), inner),
             st.builds(f.Always, intervals(), inner),
             st.builds(f.Until, inner, intervals(), inner),
+            st.builds(f.Since, inner, intervals(), inner),
+            st.builds(f.once, intervals(), inner),
+            st.builds(f.historically, intervals(), inner),
         ),
         max_leaves=leaves,
     )
@@ -51,10 +54,11 @@ OPAQUE = tuple(f.Compare(t.Signal("s", name), ">", t.number(0)) for name in ("P"
 
 @st.composite
 def opaque_cases(draw):
-    """A formula over three opaque atoms, and their truth sets; every other one is an until."""
+    """A formula over three opaque atoms, and their truth sets; two of three are until or since."""
     plain = formulas(st.sampled_from(OPAQUE))
     side = formulas(st.sampled_from(OPAQUE), leaves=2)
-    formula = draw(st.one_of(plain, st.builds(f.Until, side, intervals(), side)))
+    both = [st.builds(operator, side, intervals(), side) for operator in (f.Until, f.Since)]
+    formula = draw(st.one_of(plain, *both))
     return formula, {atom: draw(truth_sets()) for atom in OPAQUE}
 
 
@@ -69,10 +73,13 @@ def every_small_case():
         yield f.Or((left, f.Not(right))), given
         for window in windows:
             yield f.Until(left, window, right), given
+            yield f.Since(left, window, right), given
     for one in all_sets(3):
         for window in windows:
             yield f.Eventually(window, left), {left: one}
             yield f.Always(window, left), {left: one}
+            yield f.once(window, left), {left: one}
+            yield f.historically(window, left), {left: one}
 
 
 def all_sets(points):

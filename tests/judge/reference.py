@@ -73,6 +73,15 @@ class Reference:
                     if self.holds(right, r) and all(self.holds(left, x) for x in before):
                         return True
                 return False
+            case f.Since(left, interval, right):
+                past = self._past(interval, region)
+                for r in past:
+                    # At the last region the witness is its last instant: nothing lies after it.
+                    # In an earlier gap, some of that gap lies after every instant of it.
+                    after = range(r + 1 if r % 2 == 0 else r, past[-1] + 1) if r < past[-1] else ()
+                    if self.holds(right, r) and all(self.holds(left, x) for x in after):
+                        return True
+                return False
             case f.Application(_, _, body):
                 return self.holds(body, region)
             case _:
@@ -83,6 +92,15 @@ class Reference:
         time = self.sample(region)
         last = self.regions[-1] if high is None else self.locate(time + self._number(high))
         return range(self.locate(time + self._number(low)), last + 1)
+
+    def _past(self, interval, region):
+        low, high = bounds_of(interval)
+        last = self.sample(region) - self._number(low)
+        if last < -self.epsilon:
+            return range(0)
+        first = None if high is None else self.sample(region) - self._number(high)
+        begin = 0 if first is None or first <= self.epsilon else self.locate(first)
+        return range(begin, self.locate(max(last, 0)) + 1)
 
     def _number(self, value):
         return value if self.epsilon == 0 else float(value)
@@ -103,6 +121,11 @@ def critical_times(formula, of_atom):
                 if bound is not None:
                     found |= {c - (float(bound) if isinstance(c, float) else bound) for c in below}
             return {c for c in found if c >= 0}
+        case f.Since(_, interval, _):
+            below = {0}.union(*(critical_times(c, of_atom) for c in f.children(formula)))
+            bounds = [bound for bound in bounds_of(interval) if bound is not None]
+            later = {c + (float(b) if isinstance(c, float) else b) for b in bounds for c in below}
+            return below | later
         case _:
             return set().union({0}, *(critical_times(c, of_atom) for c in f.children(formula)))
 

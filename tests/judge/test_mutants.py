@@ -24,6 +24,7 @@ search = settings(
     suppress_health_check=list(HealthCheck),
 )
 real_until, real_reaching = truth.until, truth._shifted_back
+real_since, real_ahead = truth.since, truth._shifted_ahead
 real_signs, real_course, real_starts = piecewise._signs, signals.signal_polynomial, signals.piece_starts
 
 
@@ -56,6 +57,27 @@ def unclipped_until(left, low, high, right):
     return real_until(left, low, None if high is None else high + low, right)
 
 
+def greedy_since(left, low, high, right):
+    """Asks for left at the far end, too."""
+    return real_since(left, low, high, intersection([left, right]))
+
+
+def since_that_needs_no_left(left, low, high, right):
+    return real_since(truth.ALWAYS, low, high, right)
+
+
+def classic_since(left, low, high, right):
+    """Asks for left from now back, not from low back."""
+    lasting = complement(real_since(truth.ALWAYS, Fraction(0), low, complement(left)))
+    return intersection([lasting if low > 0 else truth.ALWAYS, real_since(left, low, high, right)])
+
+
+def since_before_the_start(left, low, high, right):
+    """What holds at time 0 is taken to have held before it."""
+    early = truth.interval(Fraction(0), low, "[)") if low > 0 and right.at(Fraction(0)) else truth.NEVER
+    return union([early, real_since(left, low, high, right)])
+
+
 def open_reach(low, high, spans):
     """F loses its closed ends."""
     shrunk = [Span(Cut(b.point, True), None if e is None else Cut(e.point, False)) for b, e in spans]
@@ -78,6 +100,10 @@ def short_reach(low, high, spans):
     return real_reaching(low, high if high is None else low, spans)
 
 
+def short_reach_ahead(low, high, spans):
+    return real_ahead(low, high if high is None else low, spans)
+
+
 def weak_always(low, high, body):
     """Looks at the closed window's inside only."""
     opened = TruthSet(tuple(complement(body).cuts))
@@ -93,6 +119,11 @@ def weak_always(low, high, body):
         (judging, "until", until_that_needs_no_left),
         (judging, "until", until_that_forgets_the_end),
         (judging, "until", unclipped_until),
+        (judging, "since", greedy_since),
+        (judging, "since", since_that_needs_no_left),
+        (judging, "since", classic_since),
+        (judging, "since", since_before_the_start),
+        (truth, "_shifted_ahead", short_reach_ahead),
         (truth, "_shifted_back", open_reach),
         (truth, "_shifted_back", backward_reach),
         (truth, "_shifted_back", short_reach),

@@ -82,6 +82,19 @@ class Naive:
                     min([self.margin(right, j), *(self.margin(left, i) for i in window if i < j)])
                     for j in window
                 )
+            case f.Since(left, interval, right):
+                low, high = bounds_of(interval)
+                first = 0 if high is None else max(0, k - int(high / self.dt))
+                past = range(first, k - int(low / self.dt) + 1)
+                return max(
+                    (
+                        min([self.margin(right, j), *(self.margin(left, i) for i in past if i > j)])
+                        for j in past
+                    ),
+                    default=-inf,
+                )
+            case f.Truth(value):
+                return inf if value else -inf
 
     def window(self, interval, k, bodies):
         low, high = bounds_of(interval)

@@ -182,7 +182,7 @@ def _called(text: str) -> Formula:
 def formulas(draw: st.DrawFn, depth: int = 3) -> Formula:
     """A formula without constants inside, over definitions in spec set ``ext``."""
     shapes = ["comparison", "occupancy", "call"]
-    deeper = ["not", "and", "or", "U", "F", "G", "some"]
+    deeper = ["not", "and", "or", "U", "S", "F", "G", "O", "H", "some"]
     inner = formulas(depth - 1)
     match draw(st.sampled_from([*shapes, *deeper] if depth else shapes)):
         case "comparison":
@@ -199,6 +199,12 @@ def formulas(draw: st.DrawFn, depth: int = 3) -> Formula:
             return f.Or(tuple(draw(st.lists(inner, min_size=2, max_size=3))))
         case "U":
             return f.Until(draw(inner), draw(_intervals()), draw(inner))
+        case "S":
+            return f.Since(draw(inner), draw(_intervals()), draw(inner))
+        case "O":
+            return f.once(draw(_intervals()), draw(inner))
+        case "H":
+            return f.historically(draw(_intervals()), draw(inner))
         case "F":
             return f.Eventually(draw(_intervals()), draw(inner))
         case "G":

@@ -207,8 +207,6 @@ def test_nothing_is_evaluated() -> None:
 
 # --- Signs and words of other languages are answered with what to write here ------------------------
 
-PAST = "Formulas speak of now and later: say what holds first, and what follows with F, G or U."
-
 
 @pytest.mark.parametrize(
     ("text", "line", "column", "sign", "instead"),
@@ -241,7 +239,7 @@ def test_so_in_files_and_where_a_word_is_read_as_a_name() -> None:
         parse_library("def p(a: vehicle) :=\n  true && true\n", "x.spec")
     specification = bundled_library().select("base")
     for text, instead in (
-        ("P(danger(SV, POV))", PAST),
+        ("P(danger(SV, POV))", "Write O."),
         ("True", "Write true."),
         ("exists(SV)", "some x in D"),
     ):

@@ -35,6 +35,7 @@ class Cause(StrEnum):
     ALTERNATION = "alternation"
     FIRST_INSTANT = "first-instant"
     SECOND_ORDER = "second-order"
+    PAST = "past"
 
 
 Tried: TypeAlias = Literal["proof", "traces", "drives"]

@@ -100,7 +100,7 @@ def is_atom(formula: Formula) -> bool:
                 and not any(_is_open(part) for part in f.subformulas(body))
                 and any(not isinstance(part, Application | f.Truth) for part in _parts_of(body))
             )
-        case f.Truth() | f.Not() | f.And() | f.Or() | f.Until() | f.Eventually() | f.Always():
+        case f.Truth() | f.Not() | f.And() | f.Or() | f.Until() | f.Since() | f.Eventually() | f.Always():
             return False
 
 

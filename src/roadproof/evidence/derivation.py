@@ -193,6 +193,8 @@ class _Derivation:
                 return _join(word, [self.truth(part, positive, moment) for part in parts])
             case f.Until() | f.Eventually() | f.Always() | f.Some() | f.Every():
                 return self._quantifier(formula, positive, moment)
+            case f.Since():
+                raise InputError(f.NO_PAST)
             case f.Compare() | f.Occupies():
                 raise ValueError("abstract the formula first")
             case _:

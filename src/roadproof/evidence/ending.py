@@ -94,6 +94,7 @@ def ending_of_cause(cause: Cause) -> Ending:
             | Cause.ALTERNATION
             | Cause.FIRST_INSTANT
             | Cause.SECOND_ORDER
+            | Cause.PAST
         ):
             return Ending.WORK
         case Cause.CLOCK | Cause.PROCESS | Cause.SOLVER | Cause.CERTIFICATE:

@@ -65,6 +65,8 @@ class PeriodicJudge(Judge):
                 low, high = clip(interval_seconds(window), loop)
                 left_holds, reached = (unroll_ahead(self.visit(x), low, loop) for x in (left, right))
                 return sets.until(left_holds, low, high, reached)
+            case f.Since():
+                raise InputError("a formula that looks back (O, H, S) is not judged on a trace that repeats")
             case f.Truth() | f.Not() | f.And() | f.Or() | f.Application():
                 return Judge._visit(self, formula)
             case f.Compare() | f.Occupies() | f.Some() | f.Every():

@@ -48,6 +48,8 @@ def prefix_form(formula: Formula) -> str:
             return f"(or {' '.join(map(prefix_form, parts))})"
         case f.Until(left, interval, right):
             return f"(U {_window(interval)} {prefix_form(left)} {prefix_form(right)})"
+        case f.Since(left, interval, right):
+            return f"(S {_window(interval)} {prefix_form(left)} {prefix_form(right)})"
         case f.Eventually(interval, body):
             return f"(F {_window(interval)} {prefix_form(body)})"
         case f.Always(interval, body):

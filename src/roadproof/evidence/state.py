@@ -160,7 +160,7 @@ def state(formula: Formula) -> str:
             return f"(or {' '.join(map(state, parts))})"
         case f.Application(_, _, body):
             return state(body)
-        case f.Until() | f.Eventually() | f.Always():
+        case f.Until() | f.Since() | f.Eventually() | f.Always():
             raise ValueError("a state formula has no temporal operator")
         case _:
             assert_never(formula)

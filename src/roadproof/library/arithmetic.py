@@ -6,6 +6,7 @@ from typing import Literal, TypeAlias, assert_never
 
 from roadproof.errors import Position, TextError
 from roadproof.library.quantity import SECONDS, Quantity, product_dimension, same_dimension, unit_name
+from roadproof.library.scopes import DURATION, dimension_of
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import custom_signal, signal_is_true
@@ -58,14 +59,26 @@ def check_derived(signal: SignalDeclaration, body: Formula | Quantity, at: Posit
         )
 
 
-def argument(quantity: Quantity, binding: Binding, definition: Definition, at: Position) -> Quantity:
-    """Return a number as an argument of a definition. Raises ``TextError`` for another unit than declared."""
-    dimension = UNITS[binding.sort][1]
+def argument(
+    quantity: Quantity, binding: Binding, definition: Definition, parameters: Parameters, at: Position
+) -> Quantity:
+    """Return a number as an argument of a definition.
+
+    Raises ``TextError`` for another unit than declared, and for a duration that may be negative.
+    """
+    dimension = dimension_of(binding.sort)
     if quantity.dimension not in (None, dimension):
+        shown = "s" if binding.sort == DURATION else binding.sort
         raise TextError(
-            f"argument {binding.name} of '{definition.name}' is in {binding.sort}, "
+            f"argument {binding.name} of '{definition.name}' is in {shown}, "
             f"but this is in {unit_name(quantity.dimension)}",
             at,
+        )
+    if binding.sort == DURATION and not _is_positive(quantity.term, parameters, or_zero=True):
+        raise ValueOfTermError(
+            f"argument {binding.name} of '{definition.name}' is a duration, which may never be negative",
+            at,
+            "Use numbers and parameters declared with where … >= 0, added or multiplied.",
         )
     return Quantity(quantity.term, dimension)
 

@@ -111,9 +111,10 @@ class _Grounder:
             case f.Application(name, arguments, body):
                 shown = tuple(scope.get(a, self.lanes.get(a, a)) for a in arguments)
                 return f.Application(name, shown, self.visit(body, scope))
-            case (
-                f.Truth() | f.Compare() | f.Not() | f.And() | f.Or() | f.Until() | f.Eventually() | f.Always()
-            ):
+            case f.Truth() | f.Compare() | f.Not() | f.And() | f.Or():
+                parts = tuple(self.visit(child, scope) for child in f.children(formula))
+                return f.with_children(formula, parts)
+            case f.Until() | f.Since() | f.Eventually() | f.Always():
                 parts = tuple(self.visit(child, scope) for child in f.children(formula))
                 return f.with_children(formula, parts)
 
@@ -207,7 +208,7 @@ def without_empty_windows(formula: Formula) -> Formula:
         match current:
             case f.Always():
                 return f.TRUE
-            case f.Until() | f.Eventually():
+            case f.Until() | f.Since() | f.Eventually():
                 return f.FALSE
             case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.And() | f.Or():
                 return current

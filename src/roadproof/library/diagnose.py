@@ -26,7 +26,6 @@ from roadproof.logic import terms as t
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.syntax import Definition, ParameterDeclaration
 from roadproof.runtime.records import dataclass
-from roadproof.world.units import UNITS
 
 Severity: TypeAlias = Literal["error", "info"]
 Lost: TypeAlias = tuple[re.Pattern[str], ...]
@@ -224,7 +223,7 @@ def _errors_with(walk: Elaborator, definition: Definition, size: int) -> list[Te
         if binding.sort in scopes.SORTS:
             scope[binding.name] = Vehicles(names) if binding.sort == "vehicles" else scopes.value_of(binding)
         else:
-            dimension = UNITS[binding.sort][1]
+            dimension = scopes.dimension_of(binding.sort)
             scope[binding.name] = Quantity(t.number(1, dimension), dimension)
     errors: list[TextError] = []
     inner = replace(walk.for_next_claim(), errors=errors, lost=walk.lost)

@@ -169,7 +169,7 @@ def _applied_to_own(
         for binding in parameters:
             if binding.sort != "vehicles":
                 roles.append(binding.name)
-                scope[binding.name] = scopes.value_of(binding)
+                scope[binding.name] = scopes.typical_value(binding)
                 continue
             names = (binding.name,) if size == 1 else tuple(f"{binding.name}{k + 1}" for k in range(size))
             roles += names

@@ -16,6 +16,8 @@ from roadproof.world.road import Zone
 from roadproof.world.units import UNITS
 
 SORTS = ("vehicle", "vehicles", "lane", "lanelet")
+DURATION = "duration"
+"""The sort of times that are never negative; only definitions have such arguments."""
 _FREE = {"vehicle": re.compile(r"SV|POV[0-9]?"), "lane": re.compile(r"L[0-9]?")}  # library.ROLE
 
 
@@ -46,8 +48,13 @@ Free: TypeAlias = Mapping[str, set[str]]
 
 
 def check_sort(binding: Binding) -> None:
-    if binding.sort not in SORTS and binding.sort not in UNITS:
-        raise TextError(unknown_name("sort or unit", binding.sort, (*SORTS, *UNITS)), binding.at)
+    if binding.sort not in SORTS and binding.sort != DURATION and binding.sort not in UNITS:
+        raise TextError(unknown_name("sort or unit", binding.sort, (*SORTS, DURATION, *UNITS)), binding.at)
+
+
+def dimension_of(sort: str) -> t.Dimension:
+    """Return the dimension of a number that is declared with a unit, or as a duration."""
+    return UNITS["s" if sort == DURATION else sort][1]
 
 
 def refuse_signal(name: str, signals: Collection[str], at: Position) -> None:
@@ -62,7 +69,16 @@ def value_of(binding: Binding) -> Value:
     """Return what a declared name stands for: itself, or a variable number."""
     if binding.sort in SORTS:
         return Ref(binding.sort, binding.name)
-    return Quantity(t.Variable(binding.name, UNITS[binding.sort][1]), UNITS[binding.sort][1])
+    dimension = dimension_of(binding.sort)
+    return Quantity(t.Variable(binding.name, dimension), dimension)
+
+
+def typical_value(binding: Binding) -> Value:
+    """Return what a declared name stands for where any value will do; a duration is 1 s."""
+    if binding.sort != DURATION:
+        return value_of(binding)
+    dimension = dimension_of(DURATION)
+    return Quantity(t.number(1, dimension), dimension)
 
 
 def claim_scope(bindings: tuple[Binding, ...], parameters: Collection[str], free: Free) -> Scope:
@@ -75,6 +91,13 @@ def claim_scope(bindings: tuple[Binding, ...], parameters: Collection[str], free
         if binding.name in scope:
             raise TextError(f"'{binding.name}' is given twice", binding.at)
         check_sort(binding)
+        if binding.sort == DURATION:
+            raise TextError(
+                f"'{binding.name}' is declared a duration, which only arguments of definitions are",
+                binding.at,
+                f"Declare a parameter in a specification file: param {binding.name} = 2 s where "
+                f"{binding.name} >= 0. A claim is proved for all its values.",
+            )
         if binding.sort in UNITS and binding.name in parameters:
             raise TextError(
                 f"'{binding.name}' is a parameter of the specification",

@@ -183,7 +183,8 @@ def read_specification(path: Path) -> Source:
 
 # Names with a built-in meaning, which library.elaboration gives them.
 BUILT_IN = frozenset(
-    {*SIGNALS, *FIXED, "occ"} | {"max", "min", "abs", "inverse", "lanes", "lanelets", "zone", "adjacentLanes"}
+    {*SIGNALS, *FIXED, "occ", "max", "min", "abs", "inverse", "rise", "fall"}
+    | {"lanes", "lanelets", "zone", "adjacentLanes"}
 )
 # Names of vehicles and lanes that need no declaration; columns of recordings that are no signals.
 ROLE = re.compile(r"SV|POV[0-9]?|L[0-9]?")

@@ -139,14 +139,35 @@ class SyntaxBuilder(Transformer_NonRecursive[Token, Any]):
     def and_(self, meta: Meta, items: list[Any]) -> Expression:
         return self._chain(meta, items, "and")
 
+    def _infix(self, meta: Meta, items: list[Any], op: syntax.TemporalOperator) -> Expression:
+        return syntax.Temporal(op, items[1], items[0], items[2], _at(meta))
+
+    def _prefix(self, meta: Meta, items: list[Any], op: syntax.TemporalOperator) -> Expression:
+        return syntax.Temporal(op, items[0], None, items[1], _at(meta))
+
     def until(self, meta: Meta, items: list[Any]) -> Expression:
-        return syntax.Temporal("U", items[1], items[0], items[2], _at(meta))
+        return self._infix(meta, items, "U")
+
+    def since(self, meta: Meta, items: list[Any]) -> Expression:
+        return self._infix(meta, items, "S")
+
+    def weak_until(self, meta: Meta, items: list[Any]) -> Expression:
+        return self._infix(meta, items, "W")
+
+    def release(self, meta: Meta, items: list[Any]) -> Expression:
+        return self._infix(meta, items, "R")
 
     def eventually(self, meta: Meta, items: list[Any]) -> Expression:
-        return syntax.Temporal("F", items[0], None, items[1], _at(meta))
+        return self._prefix(meta, items, "F")
 
     def always(self, meta: Meta, items: list[Any]) -> Expression:
-        return syntax.Temporal("G", items[0], None, items[1], _at(meta))
+        return self._prefix(meta, items, "G")
+
+    def once(self, meta: Meta, items: list[Any]) -> Expression:
+        return self._prefix(meta, items, "O")
+
+    def historically(self, meta: Meta, items: list[Any]) -> Expression:
+        return self._prefix(meta, items, "H")
 
     def interval(self, meta: Meta, items: list[Any]) -> syntax.Bounds:
         high = None if isinstance(items[1], Token) else items[1]
@@ -155,6 +176,14 @@ class SyntaxBuilder(Transformer_NonRecursive[Token, Any]):
     def quantified(self, meta: Meta, items: list[Any]) -> Expression:
         kind: Literal["some", "every"] = "some" if items[0] == "some" else "every"
         return syntax.Quantified(kind, str(items[1]), items[2], items[3], _at(meta))
+
+    def lane_at_start(self, meta: Meta, items: list[Any]) -> Expression:
+        """Return ``let L = lane of a at start: p`` as ``some L in lanes: atLane(a, L) and p``."""
+        lane, vehicle, body = items
+        names = (syntax.Name(str(x), _token_at(x)) for x in (vehicle, lane))
+        inside = syntax.Call("atLane", tuple(names), _token_at(vehicle))
+        both = syntax.Chain("and", (inside, body), _at(meta))
+        return syntax.Quantified("some", str(lane), syntax.Name("lanes"), both, _at(meta), at_start=True)
 
     def domain_of(self, meta: Meta, items: list[Token]) -> syntax.Call:
         inner = syntax.Name(str(items[1]), _token_at(items[1]))

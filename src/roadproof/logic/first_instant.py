@@ -61,7 +61,7 @@ def _conjuncts(formula: Formula, positive: bool = True) -> Iterator[Formula]:
             yield from _conjuncts(body, positive)
         case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.And() | f.Or():
             return
-        case f.Until() | f.Eventually() | f.Always():
+        case f.Until() | f.Since() | f.Eventually() | f.Always():
             return
         case _:
             assert_never(formula)

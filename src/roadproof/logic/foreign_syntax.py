@@ -2,7 +2,7 @@
 
 import re
 
-_PAST = "Formulas speak of now and later: say what holds first, and what follows with F, G or U."
+_PREVIOUS = "Time is dense and has no previous instant: write O[a, b] with a time."
 _SIGNS = {
     "<=>": "Write <->.",
     "<==>": "Write <->.",
@@ -51,22 +51,17 @@ _WORDS = {
     "exist": "Write some x in D: p.",
     "always": "Write G.",
     "globally": "Write G.",
-    "historically": _PAST,
-    "H": _PAST,
+    "historically": "Write H.",
     "eventually": "Write F.",
     "finally": "Write F.",
     "until": "Write U.",
-    "once": _PAST,
-    "previously": _PAST,
-    "since": _PAST,
-    "P": _PAST,
-    "O": _PAST,
-    "Y": _PAST,
-    "S": _PAST,
+    "once": "Write O.",
+    "previously": "Write O.",
+    "since": "Write S.",
+    "P": "Write O.",
+    "Y": _PREVIOUS,
     "X": "Time is dense and has no next instant: write F[a, b] with a time.",
     "next": "Time is dense and has no next instant: write F[a, b] with a time.",
-    "W": "Write (p U q) or G p.",
-    "R": "Write not (not p U not q).",
     "implies": "Write ->.",
     "iff": "Write <->.",
     "xor": "Write not (p <-> q).",
@@ -79,7 +74,7 @@ _WORDS = {
 # F[] and != belong to this language, so [] after F and ! before = are no foreign operators.
 _SIGN = re.compile(
     "|".join(
-        ("(?<![FGU])" if sign == "[]" else "") + re.escape(sign) + ("(?!=)" if sign == "!" else "")
+        ("(?<![FGUOHSWR])" if sign == "[]" else "") + re.escape(sign) + ("(?!=)" if sign == "!" else "")
         for sign in sorted(_SIGNS, key=len, reverse=True)
     )
 )

@@ -5,7 +5,9 @@ definition a sub-formula comes from, and has the meaning of its body. Quantifier
 in the tree until a road is chosen (``library.bind``).
 
 Semantics (semantics §1; paper, Table *Boolean semantics of STL*): time is dense and starts at 0. ``Until(φ,
-J, ψ)`` at T: some t in J has ψ at T+t and φ at T+t' for every t' < t in J.
+J, ψ)`` at T: some t in J has ψ at T+t and φ at T+t' for every t' < t in J. ``Since(φ, J, ψ)`` at T is its
+mirror image: some t <= T in J has ψ at T-t and φ at T-t' for every t' < t in J. "Once" and "historically" are
+written with it (``once``, ``historically``).
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -107,6 +109,15 @@ class Until:
 
 
 @node
+class Since:
+    """The only operator that looks back; nothing is before time 0."""
+
+    left: "Formula"
+    interval: Interval
+    right: "Formula"
+
+
+@node
 class Eventually:
     interval: Interval
     body: "Formula"
@@ -128,13 +139,14 @@ class Application:
 
 
 State: TypeAlias = Truth | Compare | Occupies
-Temporal: TypeAlias = Until | Eventually | Always
+Temporal: TypeAlias = Until | Since | Eventually | Always
 Formula: TypeAlias = State | Some | Every | Not | And | Or | Temporal | Application
 
 TRUE = Truth(True)
 FALSE = Truth(False)
 ZERO: Number = number(0, (0, 1))
 FOREVER = Interval(ZERO, None)
+NO_PAST = "proofs have no rules for operators that look back: O, H and S"
 
 
 def negation(body: Formula) -> Formula:
@@ -146,7 +158,7 @@ def negation(body: Formula) -> Formula:
             return inner
         case Compare() | Occupies() | Some() | Every() | And() | Or() | Application():
             return Not(body)
-        case Until() | Eventually() | Always():
+        case Until() | Since() | Eventually() | Always():
             return Not(body)
         case _:
             assert_never(body)
@@ -178,6 +190,26 @@ def equivalence(left: Formula, right: Formula) -> Formula:
     return conjunction(implication(left, right), implication(right, left))
 
 
+def once(interval: Interval, body: Formula) -> Formula:
+    """Return O: ``body`` holds at some time in the past ``interval``, counted back from now."""
+    return Since(TRUE, interval, body)
+
+
+def historically(interval: Interval, body: Formula) -> Formula:
+    """Return H: ``body`` holds at all times in the past ``interval`` that are not before time 0."""
+    return negation(Since(TRUE, interval, negation(body)))
+
+
+def weak_until(left: Formula, interval: Interval, right: Formula) -> Formula:
+    """Return W: ``left`` until ``right``, or ``left`` at all times of the interval."""
+    return disjunction(Until(left, interval, right), Always(interval, left))
+
+
+def release(left: Formula, interval: Interval, right: Formula) -> Formula:
+    """Return R: ``right`` at each time of the interval, unless ``left`` held at an earlier one of it."""
+    return negation(Until(negation(left), interval, negation(right)))
+
+
 def children(formula: Formula) -> tuple[Formula, ...]:
     """Return the direct sub-formulas of ``formula``."""
     match formula:
@@ -185,7 +217,7 @@ def children(formula: Formula) -> tuple[Formula, ...]:
             return ()
         case And(parts) | Or(parts):
             return parts
-        case Until(left, _, right):
+        case Until(left, _, right) | Since(left, _, right):
             return (left, right)
         case (
             Not(body)
@@ -212,8 +244,9 @@ def with_children(formula: Formula, new: tuple[Formula, ...]) -> Formula:
             return formula if all(map(is_, new, parts)) else type(formula)(new)
         case Not(body):
             return formula if new[0] is body else Not(new[0])
-        case Until(left, interval, right):
-            return formula if new[0] is left and new[1] is right else Until(new[0], interval, new[1])
+        case Until(left, interval, right) | Since(left, interval, right):
+            is_same = new[0] is left and new[1] is right
+            return formula if is_same else type(formula)(new[0], interval, new[1])
         case Eventually(interval, body) | Always(interval, body):
             return formula if new[0] is body else type(formula)(interval, new[0])
         case Some(variable, domain, body) | Every(variable, domain, body):
@@ -227,7 +260,7 @@ def with_children(formula: Formula, new: tuple[Formula, ...]) -> Formula:
 def intervals(formula: Formula) -> tuple[Interval, ...]:
     """Return the intervals of ``formula`` without those of its sub-formulas; empty for a state formula."""
     match formula:
-        case Until(_, interval, _) | Eventually(interval, _) | Always(interval, _):
+        case Until(_, interval, _) | Since(_, interval, _) | Eventually(interval, _) | Always(interval, _):
             return (interval,)
         case Truth() | Compare() | Occupies() | Some() | Every() | Not() | And() | Or() | Application():
             return ()
@@ -238,8 +271,8 @@ def intervals(formula: Formula) -> tuple[Interval, ...]:
 def with_intervals(formula: Formula, change: Callable[[Interval], Interval]) -> Formula:
     """Return ``formula`` with ``change`` applied to each of its ``intervals``."""
     match formula:
-        case Until(left, interval, right):
-            return Until(left, change(interval), right)
+        case Until(left, interval, right) | Since(left, interval, right):
+            return type(formula)(left, change(interval), right)
         case Eventually(interval, body) | Always(interval, body):
             return type(formula)(change(interval), body)
         case Truth() | Compare() | Occupies() | Some() | Every() | Not() | And() | Or() | Application():
@@ -286,6 +319,12 @@ def nesting(formula: Formula) -> dict[Application, int]:
 def is_state(formula: Formula) -> bool:
     """Return whether ``formula`` is about one instant only: it has no temporal operator."""
     return not isinstance(formula, Temporal) and all(map(is_state, children(formula)))
+
+
+@memoised
+def looks_back(formula: Formula) -> bool:
+    """Return whether ``formula`` has an operator that looks back."""
+    return isinstance(formula, Since) or any(map(looks_back, children(formula)))
 
 
 def hash_cons(

@@ -28,7 +28,7 @@ def top_level_conjuncts(formula: Formula, positive: bool = True) -> Iterator[For
             yield from top_level_conjuncts(body, positive)
         case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.And() | f.Or():
             yield formula if positive else f.negation(formula)
-        case f.Until() | f.Eventually() | f.Always():
+        case f.Until() | f.Since() | f.Eventually() | f.Always():
             yield formula if positive else f.negation(formula)
         case _:
             assert_never(formula)
@@ -42,7 +42,16 @@ def comparisons_at_start(formula: Formula) -> Iterator[f.Compare]:
         case f.And() | f.Or() | f.Not() | f.Application():
             for part in f.children(formula):
                 yield from comparisons_at_start(part)
-        case f.Truth() | f.Occupies() | f.Some() | f.Every() | f.Until() | f.Eventually() | f.Always():
+        case (
+            f.Truth()
+            | f.Occupies()
+            | f.Some()
+            | f.Every()
+            | f.Until()
+            | f.Since()
+            | f.Eventually()
+            | f.Always()
+        ):
             return
         case _:
             assert_never(formula)
@@ -67,7 +76,7 @@ def without_comparisons(formula: Formula, without: Collection[f.Compare], positi
             return without_comparisons(body, without, positive)
         case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Application():
             return formula
-        case f.Until() | f.Eventually() | f.Always():
+        case f.Until() | f.Since() | f.Eventually() | f.Always():
             return formula
         case _:
             assert_never(formula)
@@ -98,13 +107,16 @@ def necessary_at_start(formula: Formula) -> Formula:
             case f.Until(left, interval, right) if _has_now(interval):
                 now = visit(right, positive)
                 return f.disjunction(visit(left, True), now) if positive else now
+            case f.Since(_, interval, right) if constant_value(interval.low) is not None:
+                now = visit(right, positive) if _has_now(interval) else f.Truth(not positive)
+                return now  # nothing is before time 0
             case f.Compare(left, op, right) if not _has_own(current):
                 return current if positive else f.Compare(left, f.NEGATED[op], right)
             case f.Truth():
                 return current if positive else f.negation(current)
             case f.Compare() | f.Occupies() | f.Some() | f.Every():
                 return f.TRUE
-            case f.Until() | f.Eventually() | f.Always():
+            case f.Until() | f.Since() | f.Eventually() | f.Always():
                 return f.TRUE
             case _:
                 assert_never(current)
@@ -153,7 +165,7 @@ def forced_values(formula: Formula) -> Mapping[str, Fraction]:
                     if isinstance(formula, f.And) == value
                     else reduce(frozenset.intersection, bounds_of_parts)
                 )
-            case f.Eventually(_, body) | f.Some(_, _, body) | f.Until(_, _, body):
+            case f.Eventually(_, body) | f.Some(_, _, body) | f.Until(_, _, body) | f.Since(_, _, body):
                 return implied(body, True) if value else _NONE
             case f.Always(_, body) | f.Every(_, _, body):
                 return _NONE if value else implied(body, False)

@@ -142,7 +142,7 @@ def is_open(formula: Formula, positive: bool = True) -> bool:
             return all(is_open(part, positive) for part in parts)
         case f.Some(_, _, body) | f.Every(_, _, body) | f.Application(_, _, body):
             return is_open(body, positive)
-        case f.Until() | f.Eventually() | f.Always():
+        case f.Until() | f.Since() | f.Eventually() | f.Always():
             return False
         case _:
             assert_never(formula)

@@ -19,7 +19,7 @@ def parts_of(formula: Formula) -> Iterator[Formula]:
             yield from parts_of(body)
         case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.Or():
             yield formula
-        case f.Until() | f.Eventually() | f.Always() | f.Application():
+        case f.Until() | f.Since() | f.Eventually() | f.Always() | f.Application():
             yield formula
         case _:
             assert_never(formula)

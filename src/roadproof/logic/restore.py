@@ -42,6 +42,8 @@ def as_syntax(formula: Formula, expand: bool = False) -> Expression:
         case f.Some(variable, domain, body) | f.Every(variable, domain, body):
             kind: Literal["some", "every"] = "some" if isinstance(formula, f.Some) else "every"
             return syntax.Quantified(kind, variable, _domain(domain), as_syntax(body, expand))
+        case f.Not(f.Since(f.Truth(True), interval, f.Not(body))):
+            return syntax.Temporal("H", _bounds(interval), None, as_syntax(body, expand))
         case f.Not(body):
             return Prefix("not", as_syntax(body, expand))
         case f.And((f.Compare(a, "<=", b), f.Compare(c, ">=", d))) if (a, b) == (c, d):
@@ -61,6 +63,10 @@ def as_syntax(formula: Formula, expand: bool = False) -> Expression:
             return _chain(word, [as_syntax(part, expand) for part in parts])
         case f.Until(left, interval, right):
             return syntax.Temporal("U", _bounds(interval), as_syntax(left, expand), as_syntax(right, expand))
+        case f.Since(f.Truth(True), interval, body):
+            return syntax.Temporal("O", _bounds(interval), None, as_syntax(body, expand))
+        case f.Since(left, interval, right):
+            return syntax.Temporal("S", _bounds(interval), as_syntax(left, expand), as_syntax(right, expand))
         case f.Eventually(interval, body):
             return syntax.Temporal("F", _bounds(interval), None, as_syntax(body, expand))
         case f.Always(interval, body):

@@ -147,7 +147,7 @@ def rename(formula: f.Formula, old: str, new: str) -> f.Formula:
                 return f.Application(name, tuple(new if a == old else a for a in arguments), visit(body))
             case f.Truth() | f.Compare() | f.Not() | f.And() | f.Or():
                 return f.with_children(current, tuple(visit(child) for child in f.children(current)))
-            case f.Until() | f.Eventually() | f.Always():
+            case f.Until() | f.Since() | f.Eventually() | f.Always():
                 return f.with_children(current, tuple(visit(child) for child in f.children(current)))
 
     return visit(formula)
@@ -170,7 +170,7 @@ def road_names(formula: f.Formula) -> frozenset[str]:
             return inside | ({variable, domain.of} if domain.kind in ("lanelets", "adjacent") else {variable})
         case f.Truth() | f.Compare() | f.Not() | f.And() | f.Or() | f.Application():
             return inside
-        case f.Until() | f.Eventually() | f.Always():
+        case f.Until() | f.Since() | f.Eventually() | f.Always():
             return inside
 
 
@@ -197,7 +197,7 @@ def _free_names(formula: f.Formula, with_domains: bool) -> frozenset[str]:
                 return (inside - {variable}) | of
             case f.Truth() | f.Compare() | f.Not() | f.And() | f.Or() | f.Application():
                 return inside
-            case f.Until() | f.Eventually() | f.Always():
+            case f.Until() | f.Since() | f.Eventually() | f.Always():
                 return inside
 
     return visit(formula)
@@ -223,7 +223,7 @@ def rename_vehicles(formula: f.Formula, roles: Mapping[str, str]) -> f.Formula:
                 return f.Application(name, tuple(roles.get(a, a) for a in arguments), body)
             case f.Truth() | f.Compare() | f.Some() | f.Every() | f.Not() | f.And() | f.Or():
                 return current
-            case f.Until() | f.Eventually() | f.Always():
+            case f.Until() | f.Since() | f.Eventually() | f.Always():
                 return current
 
     return f.transform(map_terms(formula, lambda term: t.replace_leaves(term, leaf)), visit)

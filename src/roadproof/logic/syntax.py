@@ -12,7 +12,7 @@ from roadproof.errors import Position
 from roadproof.runtime.records import dataclass
 
 BinaryOperator: TypeAlias = Literal["+", "-", "*", "/", "^", "<", "<=", ">", ">=", "=", "!=", "->", "<->"]
-TemporalOperator: TypeAlias = Literal["F", "G", "U"]
+TemporalOperator: TypeAlias = Literal["F", "G", "O", "H", "U", "S", "W", "R"]
 ParameterBound: TypeAlias = Literal["", ">", ">="]
 
 LONGEST_NUMBER = 200
@@ -99,7 +99,7 @@ class Quantified:
     """``some`` or ``every`` variable ``in`` a domain.
 
     The domain is ``lanes``, ``lanelets(L)``, ``zone(main)``, ``adjacentLanes(L)``, the name of a group of
-    vehicles, or ``{A, B}``.
+    vehicles, or ``{A, B}``. ``at_start``: whether it was written as ``let``, and so is about time 0.
     """
 
     kind: Literal["some", "every"]
@@ -107,6 +107,7 @@ class Quantified:
     domain: "Name | Call | Group"
     body: "Expression"
     at: Position = field(default_factory=_nowhere, compare=False, repr=False)
+    at_start: bool = field(default=False, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,8 @@
 Negation disappears: it is pushed to the comparisons, where it turns ``<`` into ``>=``. Grid semantics:
 an operator ranges over samples k·dt; the last sample stands for every later one, so a window that
 reaches past the horizon ends on it (without acceleration from there on, see ``encode.build``). Until is
-the paper's (semantics §1): its left side must hold from the start of the interval on, not before.
+the paper's (semantics §1): its left side must hold from the start of the interval on, not before. A formula
+that looks back may change its truth for some time after the last sample; windows end when it no longer does.
 """
 
 from collections.abc import Callable
@@ -85,6 +86,7 @@ class _Unroller:
     def __init__(self, grid: Grid) -> None:
         self.grid = grid
         self.at = cache(self._at)
+        self.last = cache(self._last)
 
     def _at(self, formula: Formula, positive: bool, step: int) -> Circuit[TimedAtom]:
         """Return the circuit of ``formula`` at a sample, or of its negation where not ``positive``."""
@@ -93,7 +95,8 @@ class _Unroller:
             case f.Truth(value):
                 return All(()) if value == positive else AnyOf(())
             case Compare(left, op, right):
-                return Leaf(TimedAtom(formula if positive else Compare(left, NEGATED[op], right), step))
+                atom = formula if positive else Compare(left, NEGATED[op], right)
+                return Leaf(TimedAtom(atom, min(step, self.grid.steps)))
             case f.Not(body):
                 return self.at(body, not positive, step)
             case f.And(parts):
@@ -103,19 +106,38 @@ class _Unroller:
             case f.Application(_, _, body):
                 return self.at(body, positive, step)
             case f.Eventually(interval, body):
-                return either(self.at(body, positive, k) for k in self._samples(interval, step))
+                return either(self.at(body, positive, k) for k in self._samples(formula, interval, step))
             case f.Always(interval, body):
-                return both(self.at(body, positive, k) for k in self._samples(interval, step))
+                return both(self.at(body, positive, k) for k in self._samples(formula, interval, step))
             case f.Until(left, interval, right):
-                return self._until(left, self._samples(interval, step), right, positive, both, either)
+                samples = self._samples(formula, interval, step)
+                return self._until(left, samples, right, positive, both, either)
+            case f.Since(left, interval, right):
+                earlier = self._earlier(interval, step)
+                if not earlier:
+                    return self.at(f.FALSE, positive, step)
+                return self._until(left, earlier, right, positive, both, either)
             case f.Occupies() | f.Some() | f.Every():
                 raise ValueError(f"bind the formula to a road first: {type(formula).__name__}")
             case _:
                 assert_never(formula)
 
-    def _samples(self, interval: Interval, step: int) -> range:
+    def _last(self, formula: Formula) -> int:
+        """Return the sample from which on the truth of ``formula`` is the same."""
+        last = max((self.last(part) for part in f.children(formula)), default=self.grid.steps)
+        if isinstance(formula, f.Since):
+            low, high = self.grid.window(formula.interval)
+            return last + (low if high is None else high)
+        return last
+
+    def _earlier(self, interval: Interval, step: int) -> range:
+        """Return the samples of a window that looks back, the latest first."""
         low, high = self.grid.window(interval)
-        last = self.grid.steps
+        return range(step - low, -1 if high is None else max(-1, step - high - 1), -1)
+
+    def _samples(self, formula: f.Temporal, interval: Interval, step: int) -> range:
+        low, high = self.grid.window(interval)
+        last = self.last(formula)
         first = min(step + low, last)
         return range(first, 1 + (last if high is None else min(step + high, last)))
 
@@ -128,7 +150,7 @@ class _Unroller:
         both: Callable[[list[Circuit[TimedAtom]]], Circuit[TimedAtom]],
         either: Callable[[list[Circuit[TimedAtom]]], Circuit[TimedAtom]],
     ) -> Circuit[TimedAtom]:
-        """Build until from the last sample back: ψ now, or φ now and the until from the next sample on."""
+        """Build until, or since, from the end: ψ at a sample, or φ at it and the same from the next on."""
         result = self.at(right, positive, samples[-1])
         for k in reversed(samples[:-1]):
             result = either([self.at(right, positive, k), both([self.at(left, positive, k), result])])

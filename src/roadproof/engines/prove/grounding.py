@@ -13,6 +13,7 @@ from typing import TypeAlias, assert_never
 from roadproof.engines.prove.roads import Roster
 from roadproof.engines.prove.states import is_propositional
 from roadproof.engines.solve.recall import RecallingSession
+from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms, is_rigid
 from roadproof.evidence.road_axioms import ZONES, membership, road_clauses
 from roadproof.evidence.sites import Site, StateLemma, prefix_form
@@ -23,7 +24,7 @@ from roadproof.logic.rewrite import rename
 from roadproof.runtime.records import dataclass
 
 # What speaks of other moments, or of elements of a road.
-Timed: TypeAlias = f.Temporal | f.Some | f.Every
+Timed: TypeAlias = f.Until | f.Eventually | f.Always | f.Some | f.Every
 
 
 @dataclass(frozen=True)
@@ -137,6 +138,8 @@ class Grounding:
                 return f"({word} {' '.join(self.truth(p, positive, moment, locally) for p in parts)})"
             case f.Until() | f.Eventually() | f.Always() | f.Some() | f.Every():
                 return "false" if locally else self._obligation(formula, positive, moment)
+            case f.Since():
+                raise InputError(f.NO_PAST)
             case f.Compare() | f.Occupies():
                 raise ValueError(f"no atom: {type(formula).__name__}; abstract the formula first")
             case _:

@@ -88,6 +88,10 @@ def prove(
     Raises ``BudgetExceeded``; ``InputError`` for forbidden assumptions.
     """
     started, effort = now(), (effort or Effort()).with_clock_started()
+    if f.looks_back(query.formula):
+        return ProverResult(
+            verdict=Verdict.UNKNOWN, reason=ReasonKind.TOLD(f.NO_PAST), stop=StopPoint.PAST, seconds=0.0
+        )
     result = _prove(specification, query, effort, assumed)
     brief = effort.with_units(min(OTHERWISE, effort.units))
     for reading in other_readings(query.formula):

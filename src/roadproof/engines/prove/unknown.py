@@ -34,6 +34,7 @@ class StopPoint(StrEnum):
     PLACE = "place"
     FACTS = "facts"
     CERTIFICATE = "certificate"
+    PAST = "past"
 
 
 # Each cause as a clause.
@@ -53,6 +54,7 @@ _CLAUSES: Mapping[Cause, str] = {
     Cause.FIRST_INSTANT: (
         "the claim asks for a first instant of what it compares, and signals that jump need not have one"
     ),
+    Cause.PAST: "the claim looks back with O, H or S, for which proofs have no rules",
     Cause.SECOND_ORDER: "the claim relates positions to accelerations beyond the facts of second order",
 }
 NO_REMEDY = "no option is known that does"
@@ -110,7 +112,7 @@ class UnknownReport:
                 return Remedy("ask this claim alone, with --jobs 1", ("--jobs", "1"))
             case Cause.SOLVER | Cause.PLACE | Cause.FACTS | Cause.CERTIFICATE | Cause.LANES | Cause.INDUCTION:
                 return self.option
-            case Cause.ALTERNATION | Cause.FIRST_INSTANT | Cause.SECOND_ORDER:
+            case Cause.ALTERNATION | Cause.FIRST_INSTANT | Cause.SECOND_ORDER | Cause.PAST:
                 return self.option
 
     @property
@@ -191,7 +193,7 @@ def _repeated_eventualities(formula: Formula, positive: bool, forever: bool) -> 
                 + _repeated_eventualities(left, positive, inner)
                 + _repeated_eventualities(right, positive, later)
             )
-        case f.And() | f.Or() | f.Application() | f.Some() | f.Every():
+        case f.And() | f.Or() | f.Application() | f.Some() | f.Every() | f.Since():
             return [
                 x for part in f.children(formula) for x in _repeated_eventualities(part, positive, forever)
             ]
@@ -206,7 +208,9 @@ def _has_until(formula: Formula, claimed: bool) -> bool:
             return _has_until(body, not claimed)
         case f.Until():
             return claimed or any(_has_until(x, claimed) for x in f.children(formula))
-        case f.And() | f.Or() | f.Application() | f.Some() | f.Every() | f.Eventually() | f.Always():
+        case f.And() | f.Or() | f.Application() | f.Some() | f.Every():
+            return any(_has_until(x, claimed) for x in f.children(formula))
+        case f.Eventually() | f.Always() | f.Since():
             return any(_has_until(x, claimed) for x in f.children(formula))
         case f.Truth() | f.Compare() | f.Occupies():
             return False

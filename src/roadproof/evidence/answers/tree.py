@@ -75,9 +75,9 @@ class ChainNode:
 
 @dataclass(frozen=True, kw_only=True)
 class WithinNode:
-    """Eventually, or always."""
+    """Eventually, always, once, or historically."""
 
-    node: Literal["F", "G"]
+    node: Literal["F", "G", "O", "H"]
     low: Low
     high: High
     body: "Node"
@@ -85,9 +85,9 @@ class WithinNode:
 
 @dataclass(frozen=True, kw_only=True)
 class UntilNode:
-    """Until."""
+    """Until, since, weak until, or release."""
 
-    node: Literal["U"]
+    node: Literal["U", "S", "W", "R"]
     low: Low
     high: High
     left: "Node"
@@ -198,12 +198,12 @@ def _temporal(temporal: syntax.Temporal) -> WithinNode | UntilNode:
     bounds = temporal.bounds or Bounds(syntax.Literal_(Fraction(0)), None)
     low, high = node(bounds.low), None if bounds.high is None else node(bounds.high)
     match temporal.op:
-        case "F" | "G" as op:
+        case "F" | "G" | "O" | "H" as op:
             return WithinNode(node=op, low=low, high=high, body=node(temporal.right))
-        case "U":
+        case "U" | "S" | "W" | "R" as op:
             assert temporal.left is not None  # the grammar
             return UntilNode(
-                node="U", low=low, high=high, left=node(temporal.left), right=node(temporal.right)
+                node=op, low=low, high=high, left=node(temporal.left), right=node(temporal.right)
             )
         case _:
             assert_never(temporal.op)

@@ -170,6 +170,11 @@ class _BlameSearch:
             case f.Until(left, bounds, right):
                 if needed:
                     yield from self._until(left, right, *_window(at, *interval_seconds(bounds)))
+            case f.Since(left, bounds, right):
+                low, high = interval_seconds(bounds)
+                if needed and low <= at:
+                    begin = Fraction(0) if high is None else max(Fraction(0), at - high)
+                    yield from self._until(left, right, begin, at - low)
             case f.Occupies() | f.Some() | f.Every():
                 raise AssertionError("what is judged is bound to a road")
             case _:

@@ -184,7 +184,7 @@ def _bare(formula: Formula) -> Formula:
                 return f.disjunction(*parts)
             case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.Application():
                 return part
-            case f.Until() | f.Eventually() | f.Always():
+            case f.Until() | f.Since() | f.Eventually() | f.Always():
                 return part
 
     return f.transform(without_names(formula), change)

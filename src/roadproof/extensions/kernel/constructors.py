@@ -107,6 +107,8 @@ class Writer:
             case f.Until(left, interval, right):
                 one, other = self.formula(left, bound), self.formula(right, bound)
                 return f"(Until {one} {_interval(interval)} {other})"
+            case f.Since():
+                raise InputError(f.NO_PAST)
             case f.Eventually(interval, body):
                 return f"(Eventually {_interval(interval)} {self.formula(body, bound)})"
             case f.Always(interval, body):

@@ -259,5 +259,5 @@ def _refuted(shared: SharedState, branch: Branch, sign: bool, moment: Moment, fo
             return combine(_refuted(shared, branch, sign, moment, x) for x in parts)
         case f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Application():
             return False
-        case f.Until() | f.Eventually() | f.Always():
+        case f.Until() | f.Since() | f.Eventually() | f.Always():
             return False

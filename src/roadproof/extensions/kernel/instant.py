@@ -272,7 +272,7 @@ class _ProofSearch:
                 return constraint is not None and self._known((*state.constraints, constraint)) is not None
             case f.Truth() | f.Occupies() | f.Some() | f.Every() | f.Application():
                 return False
-            case f.Until() | f.Eventually() | f.Always():
+            case f.Until() | f.Since() | f.Eventually() | f.Always():
                 return False
 
     # --- terms -------------------------------------------------------------------------------------

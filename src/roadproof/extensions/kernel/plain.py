@@ -24,7 +24,16 @@ def binary(formula: Formula) -> Formula:
             return nested
         case f.Compare(left, op, right):
             return f.Compare(_binary_term(left), op, _binary_term(right))
-        case f.Truth() | f.Occupies() | f.Some() | f.Every() | f.Until() | f.Eventually() | f.Always():
+        case (
+            f.Truth()
+            | f.Occupies()
+            | f.Some()
+            | f.Every()
+            | f.Until()
+            | f.Since()
+            | f.Eventually()
+            | f.Always()
+        ):
             return formula
 
 

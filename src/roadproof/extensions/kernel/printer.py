@@ -210,6 +210,8 @@ class Printer:
             case f.Until(left, interval, right):
                 until = f"U{self._interval(interval, scope)}"
                 return f"{self._part(left, scope)} {until} {self._part(right, scope)}"
+            case f.Since():
+                raise InputError(f.NO_PAST)
             case f.Eventually(interval, body):
                 return f"F{self._interval(interval, scope)} {self._part(body, scope)}"
             case f.Always(interval, body):

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from roadproof.errors import InputError
 from roadproof.evidence.atoms import is_rigid, up_to_variables
 from roadproof.evidence.road_axioms import ZONES
 from roadproof.evidence.sites import Site, prefix_form
@@ -96,6 +97,8 @@ def _expand(shared: SharedState, branch: Branch, number: int, fact: TruthAt) -> 
                 )
             branch.universals.append(PendingUniversal("all", number, site, shared.listed(site)))
             return None
+        case f.Since():
+            raise InputError(f.NO_PAST)
         case f.Until(left, interval, right):
             site = Site(prefix_form(formula), sign, str(moment))
             if sign:

@@ -92,6 +92,10 @@ def _require_parts(
                 )
         case f.Until():
             _require_until(judgement, part, instants, value, require)
+        case f.Since(left, bounds, right):
+            window = _shifted_before(instants, *interval_seconds(bounds))
+            for below in (left, right):
+                require(below, sets.intersection([window, _instants_with(judgement, below, value)]), value)
         case f.Occupies() | f.Some() | f.Every():
             raise AssertionError("what is judged is bound to a road")
         case _:
@@ -137,6 +141,11 @@ def _instants_with(judgement: Judgement, part: Formula, value: bool) -> sets.Tru
 def _shifted(instants: sets.TruthSet, low: Fraction, high: Fraction | None) -> sets.TruthSet:
     """Return all instants that are ``low`` to ``high`` seconds after one of ``instants``."""
     return sets.union([sets.TruthSet(_shifted_cuts(span, low, high)) for span in instants.spans()])
+
+
+def _shifted_before(instants: sets.TruthSet, low: Fraction, high: Fraction | None) -> sets.TruthSet:
+    """Return all instants that are ``low`` to ``high`` seconds before one of ``instants``."""
+    return sets.eventually(low, high, instants)
 
 
 def _shifted_cuts(span: sets.Span, low: Fraction, high: Fraction | None) -> tuple[sets.Cut, ...]:

@@ -314,6 +314,8 @@ def _operator(part: Formula) -> str:
             return "G"
         case f.Until():
             return "U"
+        case f.Since():
+            return "S"
         case f.Compare() | f.Occupies() | f.Some() | f.Every():
             return "compare"
         case f.Truth():

@@ -143,6 +143,31 @@ def U(left: Term, right: Term, within: tuple[Number, Number | None] | None = Non
     return _temporal("U", left, right, within)
 
 
+def W(left: Term, right: Term, within: tuple[Number, Number | None] | None = None) -> Phrase:
+    """``left`` until ``right``, or ``left`` at all times (weak until), as ``F``."""
+    return _temporal("W", left, right, within)
+
+
+def R(left: Term, right: Term, within: tuple[Number, Number | None] | None = None) -> Phrase:
+    """``right`` at all times, unless ``left`` held before (release), as ``F``."""
+    return _temporal("R", left, right, within)
+
+
+def O(body: Term, within: tuple[Number, Number | None] | None = None) -> Phrase:  # noqa: E743
+    """Once; ``within`` seconds ago (low, high), the end None for the start."""
+    return _temporal("O", None, body, within)
+
+
+def H(body: Term, within: tuple[Number, Number | None] | None = None) -> Phrase:
+    """Historically: at all times so far, as ``O``."""
+    return _temporal("H", None, body, within)
+
+
+def S(left: Term, right: Term, within: tuple[Number, Number | None] | None = None) -> Phrase:
+    """``left`` since ``right``, as ``O``."""
+    return _temporal("S", left, right, within)
+
+
 _Quantifier: TypeAlias = Literal["some", "every"]
 Body: TypeAlias = Phrase | Callable[[Phrase], Phrase]
 """What a quantifier says of its variable: a formula, or a function that makes one."""

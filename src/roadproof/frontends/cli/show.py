@@ -20,6 +20,7 @@ from roadproof.frontends.settings.commands import Show
 from roadproof.library.elaborate import read_claim, signature
 from roadproof.library.scenario_references import number_by_name, numbers_by_name, refuse_unknown
 from roadproof.library.scenarios import name_of, number_in
+from roadproof.library.scopes import DURATION
 from roadproof.library.specification import Specification, unknown_name
 from roadproof.library.uses import parts_of_claim
 from roadproof.library.words import Words, words_of
@@ -152,7 +153,10 @@ def _application(specification: Specification, definition: Definition) -> Claim:
         members = len(roles) - len(definition.parameters) + 1 if is_group else 1
         sort = "vehicle" if is_group else binding.sort
         given += [Binding(role, sort) for role in roles[len(given) : len(given) + members]]
-    return Claim(tuple(given), syntax.Call(definition.name, tuple(syntax.Name(role) for role in roles)))
+    second = syntax.Literal_(Fraction(1), "s")
+    arguments = tuple(second if x.sort == DURATION else syntax.Name(x.name) for x in given)
+    declared = tuple(x for x in given if x.sort != DURATION)
+    return Claim(declared, syntax.Call(definition.name, arguments))
 
 
 def _compared(claim: Claim) -> Claim:

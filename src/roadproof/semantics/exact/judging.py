@@ -29,6 +29,7 @@ from roadproof.semantics.exact.truth import (
     complement,
     eventually,
     intersection,
+    since,
     union,
     until,
 )
@@ -120,6 +121,8 @@ class Judge:
                 return always(*interval_seconds(interval), self.visit(body))
             case f.Until(left, interval, right):
                 return until(self.visit(left), *interval_seconds(interval), self.visit(right))
+            case f.Since(left, interval, right):
+                return since(self.visit(left), *interval_seconds(interval), self.visit(right))
             case f.Occupies() | f.Some() | f.Every():
                 raise InputError("a formula over a road's lanes is judged after it is bound to a road")
             case _:
@@ -163,7 +166,7 @@ class LazyJudge(Judge):
                 return self.holds(body)
             case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every():
                 return self.visit(formula).at(Fraction(0))
-            case f.Until() | f.Eventually() | f.Always():
+            case f.Until() | f.Since() | f.Eventually() | f.Always():
                 return self.visit(formula).at(Fraction(0))
 
     def _visit(self, formula: Formula) -> TruthSet:
@@ -187,7 +190,7 @@ class LazyJudge(Judge):
                 return until(self.visit(left), *interval_seconds(interval), end) if end != NEVER else NEVER
             case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.Application():
                 return Judge._visit(self, formula)
-            case f.Eventually() | f.Always():
+            case f.Eventually() | f.Always() | f.Since():
                 return Judge._visit(self, formula)
 
 

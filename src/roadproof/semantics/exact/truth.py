@@ -145,6 +145,34 @@ def until(left: TruthSet, low: Fraction, high: Fraction | None, right: TruthSet)
     return _overlapped(_shifted_back(low, low, _overlapped(reached, 1).spans()), 1)
 
 
+def since(left: TruthSet, low: Fraction, high: Fraction | None, right: TruthSet) -> TruthSet:
+    """Return S_[low, high], the mirror image of ``until``: nothing is before time 0.
+
+    At T it is the since that starts with 0, seen from T - low. That one holds where right does, and, on each
+    maximal interval ⟨p, q⟩ of left, where right was true within high - low at a point of [p, q]: that may be
+    p itself even if left fails there.
+    """
+    length = None if high is None else high - low
+    reached = list(right.spans())
+    for span in left.spans():
+        begin, end = span
+        reach = Span(Cut(begin.point, False), None if end is None else Cut(end.point, True))
+        targets = [met for other in right.spans() if (met := _meet(other, reach)) is not None]
+        for reaching in _shifted_ahead(Fraction(0), length, targets):
+            met = _meet(reaching, span)
+            if met is not None:
+                reached.append(met)
+    return _overlapped(_shifted_ahead(low, low, _overlapped(reached, 1).spans()), 1)
+
+
+def _shifted_ahead(low: Fraction, high: Fraction | None, spans: Iterable[Span]) -> list[Span]:
+    """Return each span moved to the times from which it lies back by ``low`` to ``high``."""
+    return [
+        Span(_moved(begin, low), None if end is None or high is None else _moved(end, high))
+        for begin, end in spans
+    ]
+
+
 def _shifted_back(low: Fraction, high: Fraction | None, spans: Iterable[Span]) -> list[Span]:
     """Return each span moved to the times from which it is reached within [low, high], cut off at 0."""
     shifted: list[Span] = []

@@ -64,6 +64,26 @@ class Batch:
     def traces(self) -> int:
         return len(self.lengths)
 
+    def from_starts(self, starts: Integers) -> "Batch":
+        """Return the batch without the samples before those at which each trace ``starts``."""
+        return Batch(
+            self.dt,
+            self.lengths - starts,
+            {key: rows_from(values, starts) for key, values in self.signals.items()},
+            self.sizes,
+            {formula: rows_from(values, starts) for formula, values in self.given.items()},
+            self.source,
+        )
+
+
+def rows_from(values: Array, starts: Integers) -> Array:
+    """Return ``values``, shape (time, traces), with row ``starts[i]`` of trace i as its first.
+
+    The last row fills what is then left.
+    """
+    rows = np.minimum(np.arange(len(values))[:, None] + starts[None, :], len(values) - 1)
+    return np.take_along_axis(values, rows, axis=0)
+
 
 def inside(lengths: Integers, samples: int) -> NDArray[np.bool_]:
     """Return which samples belong to their traces, shape (samples, traces)."""

@@ -35,7 +35,7 @@ from roadproof.semantics.sampled.answers import (
     views,
 )
 from roadproof.semantics.sampled.arithmetic import Bytecode, margin_program, truth_program
-from roadproof.semantics.sampled.batch import Array, Batch, Integers
+from roadproof.semantics.sampled.batch import Array, Batch, Integers, rows_from
 from roadproof.semantics.sampled.boolean import BITS, TRUTH, observe_truth, pack, packed_inside, unpack
 from roadproof.semantics.sampled.lattice import LatticeEvaluation, View
 from roadproof.semantics.sampled.robustness import (
@@ -72,6 +72,12 @@ class Observation:
             raise InputError("a trace is cut to a length from 1 to the one it has")
         return replace(self, lengths=lengths)
 
+    def from_starts(self, starts: Integers) -> "Observation":
+        """Return the observation without the samples before those at which each trace ``starts``."""
+        traces = len(self.lengths)
+        leaves = {x: pack(rows_from(unpack(words, traces), starts)) for x, words in self.leaves.items()}
+        return Observation(self.dt, self.lengths - starts, self.samples, leaves)
+
 
 @dataclass(frozen=True)
 class Monitor(Generic[Key]):
@@ -86,6 +92,10 @@ class Monitor(Generic[Key]):
     states: frozenset[Formula]
     signals: tuple[SignalName | CustomSignal, ...]
     programs: dict[tuple[Compare, ...], Bytecode] = field(default_factory=dict, repr=False, compare=False)
+
+    @cached_property
+    def _looks_back(self) -> bool:
+        return any(map(f.looks_back, self.plain.values()))
 
     @cached_property
     def named(self) -> Mapping[Application, Formula]:
@@ -127,6 +137,8 @@ class Monitor(Generic[Key]):
         """
         seen = self.observe(batch, threads=threads) if isinstance(batch, Batch) else batch
         check_starts(starts, seen.lengths)
+        if starts is not None and at == "start" and self._looks_back:
+            return self.evaluate(seen.from_starts(starts), semantics, named=named)
         evaluation, traces = self._evaluation(seen), len(seen.lengths)
 
         def answer(formula: Formula, starts: Integers | None) -> TruthArrays:
@@ -175,6 +187,8 @@ class Monitor(Generic[Key]):
     ) -> Margins[Key]:
         """Return the margin of every formula; arguments and errors as in ``evaluate``."""
         check_starts(starts, batch.lengths)
+        if starts is not None and at == "start" and self._looks_back:
+            return self.measure(batch.from_starts(starts), semantics, named=named, threads=threads)
         given = _given(batch)
         comparisons = tuple(self._comparisons(given))
         program = margin_program(comparisons)
@@ -232,7 +246,7 @@ class Monitor(Generic[Key]):
                     )
                 case f.Truth() | f.Not() | f.And() | f.Or() | f.Application():
                     waiting.extend(f.children(current))
-                case f.Until() | f.Eventually() | f.Always():
+                case f.Until() | f.Since() | f.Eventually() | f.Always():
                     waiting.extend(f.children(current))
                 case _:
                     assert_never(current)

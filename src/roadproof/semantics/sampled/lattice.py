@@ -129,6 +129,10 @@ class LatticeEvaluation:
                 low, high = self._steps(interval)
                 left_values, reached = self._padded(left, view, padding), self._padded(right, view, padding)
                 return until(self.lattice, left_values, reached, low, high, padding)
+            case f.Since(left, interval, right):
+                return since(
+                    self.lattice, self.value(left, view), self.value(right, view), *self._steps(interval)
+                )
             case f.Compare() | f.Occupies() | f.Some() | f.Every():
                 raise AssertionError(f"{type(formula).__name__} is a leaf: compile() collects them")
             case _:
@@ -159,6 +163,9 @@ class LatticeEvaluation:
                 padding = self._padding(view, universal=False)
                 left_values, reached = self._padded(left, view, padding), self._padded(right, view, padding)
                 return first_until(self.lattice, left_values, reached, *self._steps(interval), padding)
+            case f.Since(_, interval, right):
+                low, _ = self._steps(interval)
+                return self.first(right, view) if low == 0 else np.full(self.shape[1], self.lattice.bottom)
             case f.Compare() | f.Occupies() | f.Some() | f.Every():
                 raise AssertionError(f"{type(formula).__name__} is a leaf: compile() collects them")
 
@@ -288,6 +295,15 @@ def until(lattice: Lattice, left: Array, reached: Array, low: int, high: int | N
         if target - width >= width:
             lefts = join_shifted(lattice.meet, lefts, lefts, step, padding)
     return shift(best, low, padding)
+
+
+def since(lattice: Lattice, left: Array, reached: Array, low: int, high: int | None) -> Array:
+    """Return the join over j in [low, high] of ``reached[k-j]`` met with ``left[k-i]`` for all i in [low, j).
+
+    It is the mirror image of ``until``; no sample is before the first. Row k depends on no later row, so the
+    values after the end of a trace do no harm.
+    """
+    return until(lattice, left[::-1], reached[::-1], low, high, lattice.bottom)[::-1]
 
 
 def _samples_in_window(low: int, high: int | None, samples: int) -> int:

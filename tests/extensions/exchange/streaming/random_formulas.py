@@ -22,9 +22,9 @@ _TERMS: tuple[t.Term, ...] = (
 )
 
 
-def random_formula(rng: np.random.Generator, depth: int) -> Formula:
-    """A formula with about ``depth`` operators above each other."""
-    kind = rng.integers(0, 3) if depth == 0 else rng.integers(0, 12)
+def random_formula(rng: np.random.Generator, depth: int, ends: bool = False) -> Formula:
+    """A formula with about ``depth`` operators above each other; ``ends``: within bounds of time."""
+    kind = rng.integers(0, 3) if depth == 0 else rng.integers(0, 15)
     if kind == 0:
         return IN_LANE if rng.random() < 0.5 else ON_MAIN
     if kind <= 2:
@@ -32,7 +32,7 @@ def random_formula(rng: np.random.Generator, depth: int) -> Formula:
         if rng.random() < 0.1:
             left, right = t.Inverse(left), t.Inverse(right)
         return f.Compare(left, _OPS[rng.integers(0, 4)], right)
-    inner = [random_formula(rng, depth - 1) for _ in range(2)]
+    inner = [random_formula(rng, depth - 1, ends or kind >= 12) for _ in range(2)]
     if kind == 3:
         return f.Not(inner[0])
     if kind <= 5:
@@ -41,6 +41,12 @@ def random_formula(rng: np.random.Generator, depth: int) -> Formula:
     width = [None, 0, int(rng.integers(1, 5)), int(rng.integers(5, 80))][
         rng.choice(4, p=[0.4, 0.1, 0.4, 0.1])
     ]
+    if kind == 12:
+        return f.Since(inner[0], interval(low, width), inner[1])
+    if kind >= 13:
+        return (f.once if kind == 13 else f.historically)(interval(low, width), inner[0])
+    if ends and width is None:
+        width = 3
     if kind <= 7:
         return f.Until(inner[0], interval(low, width), inner[1])
     return (f.Eventually if kind <= 9 else f.Always)(interval(low, width), inner[0])

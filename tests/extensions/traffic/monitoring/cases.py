@@ -69,6 +69,9 @@ def _larger_formulas(inner: st.SearchStrategy[Formula]) -> st.SearchStrategy[For
         st.builds(f.Eventually, intervals, inner),
         st.builds(f.Always, intervals, inner),
         st.builds(f.Until, inner, intervals, inner),
+        st.builds(f.Since, inner, intervals, inner),
+        st.builds(f.once, intervals, inner),
+        st.builds(f.historically, intervals, inner),
         st.builds(f.Application, st.sampled_from("pq"), st.just(("SV", "L")), inner),
     )
 
@@ -95,15 +98,15 @@ def random_batch(seed: int, traces: int, longest: int, ties: bool = True) -> Bat
     return Batch(DT, lengths, signals, sizes, given)
 
 
-def trace_of(batch: Batch, index: int) -> SampledTrace:
-    """One trace of a batch, without what follows its end."""
-    length = int(batch.lengths[index])
+def trace_of(batch: Batch, index: int, start: int = 0, end: int | None = None) -> SampledTrace:
+    """One trace of a batch from a sample on, without what follows its end."""
+    rows = slice(start, int(batch.lengths[index]) if end is None else end)
     return SampledTrace(
         batch.dt,
-        length,
-        {key: values[:length, index].tolist() for key, values in batch.signals.items()},
+        rows.stop - start,
+        {key: values[rows, index].tolist() for key, values in batch.signals.items()},
         {key: float(values[index]) for key, values in batch.sizes.items()},
-        {formula: values[:length, index].tolist() for formula, values in batch.given.items()},
+        {formula: values[rows, index].tolist() for formula, values in batch.given.items()},
     )
 
 

@@ -34,6 +34,10 @@ EXAMPLES: tuple[Formula, ...] = (
     f.Not(f.Eventually(interval(0, 2), ON_MAIN)),
     f.Always(interval(0, None), f.Not(f.Always(interval(1, 2), ON_MAIN))),
     INVERSE,
+    f.Since(IN_LANE, interval(0, 5), ON_MAIN),
+    f.Since(IN_LANE, interval(2, 3), ON_MAIN),
+    f.Eventually(interval(0, 6), f.Since(f.Or((IN_LANE, SPEED)), interval(1, None), NEAR)),
+    f.Eventually(interval(3, None), f.historically(interval(0, 2), f.Or((IN_LANE, NEAR)))),
 )
 
 
@@ -88,6 +92,35 @@ def until_asks_from_now_on(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(semantics, "until", wrong)
 
 
+def since_asks_at_the_end(patch: pytest.MonkeyPatch) -> None:
+    right = semantics.since
+
+    def wrong(lattice: Any, held: Array, reached: Array, *rest: Any) -> Array:
+        return right(lattice, held, lattice.meet(held, reached), *rest)
+
+    patch.setattr(semantics, "since", wrong)
+
+
+def since_is_once(patch: pytest.MonkeyPatch) -> None:
+    right = semantics.since
+    patch.setattr(
+        semantics,
+        "since",
+        lambda lattice, held, *rest: right(lattice, np.full_like(held, lattice.top), *rest),
+    )
+
+
+def the_first_sample_lasts(patch: pytest.MonkeyPatch) -> None:
+    """What holds at the first sample is taken to have held before it."""
+    right = semantics.since
+
+    def wrong(lattice: Any, held: Array, reached: Array, low: int, high: int | None) -> Array:
+        more = [np.concatenate([np.repeat(x[:1], 9, axis=0), x]) for x in (held, reached)]
+        return right(lattice, *more, low, high)[9:]
+
+    patch.setattr(semantics, "since", wrong)
+
+
 def negation_keeps_the_view(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(semantics, "OPPOSITE", {view: view for view in View})
 
@@ -139,6 +172,9 @@ FAULTS: Sequence[Plant] = (
     window_starts_late,
     until_asks_at_the_end,
     until_asks_from_now_on,
+    since_asks_at_the_end,
+    since_is_once,
+    the_first_sample_lasts,
     negation_keeps_the_view,
     weak_is_strong,
     empty_windows_fail_always,

@@ -4,6 +4,7 @@
 
 - ``past_3``: earlier values, the newest first, a bit each or a word for each table;
 - ``left_3``: for how many samples a window goes on to hold (eventually) or to fail (always);
+- ``open_3``: for how many samples a since goes on to hold if its left side does; 1 where it has no end;
 - ``waiting_3``, ``met_3``: an until in a window. At how many of the last samples it is open, and a bit for
   each sample of the window, set where it holds.
 """
@@ -20,6 +21,7 @@ from roadproof.extensions.exchange.streaming.plan import (
     LeafValue,
     Negation,
     Operand,
+    Past,
     Plan,
     PlanNode,
     Widening,
@@ -145,6 +147,8 @@ def members_of(plan: Plan) -> list[Member]:
             words.append(Member(f"past_{k}", node.kept + 1 if node.table else _words(node.kept)))
         if isinstance(node.operation, WindowOperation) and not node.table:
             numbers.append(Member(f"left_{k}", None))
+        elif isinstance(node.operation, Past):
+            numbers.append(Member(f"open_{k}", None))
         elif isinstance(node.operation, BoundedUntil) and not node.table:
             words.append(Member(f"met_{k}", _words(node.operation.width)))
             numbers.append(Member(f"waiting_{k}", None))
@@ -205,6 +209,8 @@ class _NodeWriter:
                 yield from self.within(left, right, width)
             case Forever():
                 yield from self.forever(node.operation)
+            case Past(left, right, width):
+                yield from self.past(left, right, width)
             case _:
                 assert_never(node.operation)
         if node.kept and node.table:
@@ -243,6 +249,21 @@ class _NodeWriter:
             value = f"{self.padded(operation.right)} | ({self.padded(operation.left)} & {later})"
         yield f"const uint64_t n{k} = state->count > {self.node.ready} ? {value} : {later};"
         yield f"{later} = n{k};"
+
+    def past(self, left: Operand, right: Operand, width: int | None) -> Iterator[str]:
+        """Yield the statements of a since; before the first sample nothing is true."""
+        k = self.k
+        yield f"if (state->count > {self.node.ready}) {{"
+        yield f"    if ({self.read(right)}) {{"
+        yield f"        state->open_{k} = {1 if width is None else width + 1};"
+        yield f"    }} else if (!{self.read(left)}) {{"
+        yield f"        state->open_{k} = 0;"
+        if width is not None:
+            yield f"    }} else if (state->open_{k} > 0) {{"
+            yield f"        --state->open_{k};"
+        yield "    }"
+        yield "}"
+        yield self.set(f"state->open_{k} > 0")
 
     def read(self, operand: Operand) -> str:
         """The value of an operand, as a table where this node is one."""

@@ -108,7 +108,7 @@ def _observe(monitor: StreamMonitor, fields: Mapping[Source, SampleField]) -> li
 
 def _advance(plan: Plan) -> list[str]:
     """``ended``: which sample after the end of the trace this is, 0 inside; ``pad``: values there."""
-    ceiling = max(node.delay for node in plan.nodes) + 2
+    ceiling = max(max(node.delay, node.ready) for node in plan.nodes) + 2
     count = f"state->count += state->count < {ceiling};"
     body, last = list(evaluation.statements(plan)), len(plan.nodes) - 1
     if not plan.at_start:

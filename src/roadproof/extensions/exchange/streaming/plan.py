@@ -97,8 +97,17 @@ class Forever:
     variable: int
 
 
+@dataclass(frozen=True)
+class Past:
+    """Since; ``width``: how far it looks back beyond the lag of its operands, None for no end."""
+
+    left: Operand
+    right: Operand
+    width: int | None
+
+
 Operation: TypeAlias = (
-    LeafValue | Constant | Negation | Junction | Widening | WindowOperation | BoundedUntil | Forever
+    LeafValue | Constant | Negation | Junction | Widening | WindowOperation | BoundedUntil | Forever | Past
 )
 
 
@@ -198,7 +207,7 @@ def operands(operation: Operation) -> tuple[Operand, ...]:
             return (operand,)
         case Junction(_, parts):
             return parts
-        case BoundedUntil(left, right, _):
+        case BoundedUntil(left, right, _) | Past(left, right, _):
             return (left, right)
         case Forever(_, left, right, _):
             return (right,) if left is None else (left, right)
@@ -235,7 +244,7 @@ class _Planner:
         if formula not in self.looks:
             below = [self.look(x) for x in self._read(formula)]
             ahead, table = max((delay for delay, _ in below), default=0), any(x for _, x in below)
-            for interval in f.intervals(formula):
+            for interval in () if isinstance(formula, f.Since) else f.intervals(formula):
                 low, high = interval_steps(interval, self.dt)
                 ahead, table = ahead + (low if high is None else high), table or high is None
             self.looks[formula] = ahead, table
@@ -251,7 +260,7 @@ class _Planner:
                 return (right,) if low == high else (left, right)
             case f.Truth() | f.Compare() | f.Occupies() | f.Not() | f.And() | f.Or() | f.Application():
                 return f.children(formula)
-            case f.Eventually() | f.Always():
+            case f.Eventually() | f.Always() | f.Since():
                 return f.children(formula)
 
     def place(self, formula: Formula, opposite: bool, least: int = 0) -> int:
@@ -282,6 +291,8 @@ class _Planner:
                 return self._join(isinstance(formula, f.And), list(dict.fromkeys(each)), delay)
             case f.Eventually(interval, _) | f.Always(interval, _) | f.Until(_, interval, _):
                 return self._temporal(formula, interval, opposite, delay)
+            case f.Since(left, interval, right):
+                return self._since(left, interval, right, opposite, delay)
             case _:
                 assert_never(formula)
 
@@ -326,6 +337,24 @@ class _Planner:
         width = high - low
         operation = BoundedUntil(left[0], right, width) if left else WindowOperation(universal, right, width)
         return self._add(PlanNode(operation, ready, delay, opposite, table))
+
+    def _since(self, left: Formula, interval: f.Interval, right: Formula, opposite: bool, delay: int) -> int:
+        """The node of a since, whose operands lie back by the low bound of its interval."""
+        if self.look(left)[1] or self.look(right)[1]:
+            raise InputError(
+                "the formula looks back (O, H, S) at a part with F, G or U without an upper bound, which a "
+                "monitor in C cannot remember: give that part a bound"
+            )
+        low, high = interval_steps(interval, self.dt)
+        farthest = max(low, high or 0)
+        if farthest > MOST_DELAY:
+            raise InputError(
+                f"the formula looks back {farthest} samples at a step of {float(self.dt):g} s; a monitor in "
+                f"C looks back by at most {MOST_DELAY}: shorten the intervals or take a longer --dt"
+            )
+        one, other = (self._at(self.place(x, opposite, delay), delay + low) for x in (left, right))
+        width = None if high is None else high - low
+        return self._add(PlanNode(Past(one, other, width), delay + low, delay))
 
     def _widening(self, below: int, delay: int) -> int:
         return self._add(PlanNode(Widening(self._at(below, delay)), delay, delay, table=True))

@@ -121,7 +121,15 @@ def _outermost(formulas: Iterable[Formula]) -> Iterator[tuple[Lane, str]]:
             case f.Application(called, arguments, body):
                 waiting.append((body, f"{called}_{'_'.join(arguments)}"))
             case (
-                f.Truth() | f.Compare() | f.Not() | f.And() | f.Or() | f.Until() | f.Eventually() | f.Always()
+                f.Truth()
+                | f.Compare()
+                | f.Not()
+                | f.And()
+                | f.Or()
+                | f.Until()
+                | f.Since()
+                | f.Eventually()
+                | f.Always()
             ):
                 waiting.extend((child, "") for child in reversed(f.children(node)))
             case _:

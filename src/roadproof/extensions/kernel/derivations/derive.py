@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import assert_never
 
+from roadproof.errors import InputError
 from roadproof.evidence import periodic
 from roadproof.evidence.periodic import PeriodicJudge, Window
 from roadproof.extensions.kernel.derivation import (
@@ -154,6 +155,8 @@ class _Deriver:
                 return self._until(left, right, scope, part, interval_seconds(interval))
             case f.Until(left, interval, right):
                 return self._not_until(left, right, scope, part, interval_seconds(interval))
+            case f.Since():
+                raise InputError(f.NO_PAST)
             case f.Application(_, _, body):
                 return self.why(body, scope, positive, part)
             case _:
@@ -377,5 +380,5 @@ class _ScopedJudge(PeriodicJudge):
                 return union(truths) if isinstance(formula, f.Some) else intersection(truths)
             case f.Truth() | f.Not() | f.And() | f.Or() | f.Application():
                 return PeriodicJudge._visit(self, formula)
-            case f.Until() | f.Eventually() | f.Always():
+            case f.Until() | f.Since() | f.Eventually() | f.Always():
                 return PeriodicJudge._visit(self, formula)

@@ -380,5 +380,5 @@ def assume(
         case f.Not() | f.And() | f.Or() | f.Some() | f.Every():
             inside = (assume(shapes, x, part, changing, above) for x in f.children(formula))
             return f.with_children(formula, tuple(inside))
-        case f.Truth() | f.Occupies() | f.Until() | f.Eventually() | f.Always() | f.Application():
+        case f.Truth() | f.Occupies() | f.Until() | f.Since() | f.Eventually() | f.Always() | f.Application():
             return formula

@@ -25,10 +25,10 @@ _SIGNS = {
     "every": "∀",
     "in": "∈",
 }
-_TEMPORAL = {"G": "𝓖", "F": "𝓕", "U": "𝓤"}
+_TEMPORAL = {"G": "𝓖", "F": "𝓕", "U": "𝓤", "W": "𝓦", "R": "𝓡", "O": "𝓞", "H": "𝓗", "S": "𝓢"}
 _GREEK = {"rho": "ρ", "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "tau": "τ", "mu": "μ"}
 _TOKEN = re.compile(
-    r"(?P<bounds>\b[GFU]\[[^\]]*\])|(?P<name>[A-Za-z_]\w*(?:-\d+)?(?:@\w+)?)|(?P<sign><->|->|<=|>=|!=|:=|[*-])"
+    r"(?P<bounds>\b[GFUWROHS]\[[^\]]*\])|(?P<name>[A-Za-z_]\w*(?:-\d+)?(?:@\w+)?)|(?P<sign><->|->|<=|>=|!=|:=|[*-])"
     r"|(?P<number>\d[\d.]*)|(?P<space>\s+)|(?P<other>.)",
     re.DOTALL,
 )

@@ -100,7 +100,7 @@ def _components(whole: Formula, number: int) -> Iterator[tuple[f.Application, Re
                     yield from walk(part, _inside(current, place, rebuild), inside)
             case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.Or():
                 return
-            case f.Until() | f.Eventually() | f.Always():
+            case f.Until() | f.Since() | f.Eventually() | f.Always():
                 return
             case _:
                 assert_never(current)
@@ -125,7 +125,7 @@ def _conditions(
             below += _conditions(left, _inside(current, 0, rebuild), where, current)
         case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every():
             pass
-        case f.Not() | f.Or() | f.Application():
+        case f.Not() | f.Or() | f.Application() | f.Since():
             pass
         case _:
             assert_never(current)

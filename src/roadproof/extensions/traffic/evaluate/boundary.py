@@ -152,6 +152,7 @@ class _BoundedFormulas:
                 | f.And()
                 | f.Or()
                 | f.Until()
+                | f.Since()
                 | f.Eventually()
                 | f.Always()
                 | f.Application()

@@ -29,6 +29,8 @@ def _horizon_of(formula: f.Formula, below: list[Seconds | None]) -> Seconds | No
         case f.Until(_, interval, _) | f.Eventually(interval, _) | f.Always(interval, _):
             high = bounds_of(interval)[1]
             return None if high is None or farthest is None else high + farthest
+        case f.Since():
+            return farthest
         case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.And() | f.Or():
             return farthest
         case f.Application():

@@ -90,6 +90,12 @@ class TraceReader:
                     if self.holds(right, j, view) and all(self.holds(left, i, view) for i in window if i < j):
                         return True
                 return view == "weak" and not whole and all(self.holds(left, i, view) for i in window)
+            case f.Since(left, interval, right):
+                past = self.past(interval, k)
+                return any(
+                    self.holds(right, j, view) and all(self.holds(left, i, view) for i in past if i > j)
+                    for j in past
+                )
             case f.Occupies() | f.Some() | f.Every():
                 raise _not_given(formula)
             case _:
@@ -135,6 +141,12 @@ class TraceReader:
                 if view == "weak" and not whole:
                     best = max(best, min((self.margin(left, i, view) for i in window), default=inf))
                 return best
+            case f.Since(left, interval, right):
+                past, best = self.past(interval, k), -inf
+                for j in past:
+                    after = (self.margin(left, i, view) for i in past if i > j)
+                    best = max(best, min(self.margin(right, j, view), min(after, default=inf)))
+                return best
             case f.Occupies() | f.Some() | f.Every():
                 raise _not_given(formula)
             case _:
@@ -150,6 +162,12 @@ class TraceReader:
             return range(first, self.trace.length), False
         last = k + self._steps(high)
         return range(first, min(last, self.trace.length - 1) + 1), last < self.trace.length
+
+    def past(self, interval: f.Interval, k: int) -> range:
+        """Samples of the trace in k - interval."""
+        low, high = bounds_of(interval)
+        first = 0 if high is None else max(0, k - self._steps(high))
+        return range(first, k - self._steps(low) + 1)
 
     def _steps(self, bound: Fraction) -> int:
         count, rest = divmod(bound, self.trace.dt)

@@ -81,6 +81,9 @@ def _reach(formula: Formula, dt: Fraction) -> int:
     for interval in f.intervals(formula):
         low, high = interval_seconds(interval)
         steps(low, dt)
+        if isinstance(formula, f.Since):
+            steps(low if high is None else high, dt)
+            continue
         within += steps(low if high is None else high, dt)
     return within
 
@@ -119,6 +122,8 @@ class _Sampler:
                 return -_greatest_ahead(-self.visit(body), *self._steps(interval))
             case f.Until(left, interval, right):
                 return _until(self.visit(left), *self._steps(interval), self.visit(right))
+            case f.Since(left, interval, right):
+                return _since(self.visit(left), *self._steps(interval), self.visit(right))
             case f.Occupies() | f.Some() | f.Every():
                 raise InputError("a formula over a road's lanes is sampled after it is bound to a road")
             case _:
@@ -159,3 +164,20 @@ def _until(left: Array, low: int, high: int | None, right: Array) -> Array:
         left_least = np.minimum(left_least, left[j - 1 : j - 1 + count])
         best = np.maximum(best, np.minimum(right[j : j + count], left_least))
     return best
+
+
+def _since(left: Array, low: int, high: int | None, right: Array) -> Array:
+    """max over j in [low, high], j <= k, of min(right[k-j], left[k-low .. k-j+1]); else -inf."""
+    length = min(len(left), len(right))
+    best = np.full(length, -inf)
+    for j in range(low, length if high is None else min(high + 1, length)):
+        best[j:] = np.maximum(best[j:], np.minimum(right[: length - j], _least(left, low, j, length)))
+    return best
+
+
+def _least(left: Array, low: int, j: int, length: int) -> Array:
+    """min of left[k-low .. k-j+1] for each k from j to length - 1; inf where that is empty."""
+    least = np.full(length - j, inf)
+    for i in range(low, j):
+        least = np.minimum(least, left[j - i : length - i])
+    return least

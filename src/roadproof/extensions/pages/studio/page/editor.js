@@ -6,7 +6,7 @@ import { ask } from "studio/server";
 import * as state from "studio/state";
 
 const WORDS = /^(?:def|param|signal|option|each|set|extends|when|lane|title|of|for|where|in|derived|by)\b/;
-const LOGIC = /^(?:not|and|or|some|every|given|true|false|inf|F|G|U)(?![A-Za-z0-9_])/;
+const LOGIC = /^(?:not|and|or|some|every|given|true|false|inf|F|G|U|O|H)(?![A-Za-z0-9_])/;
 const UNIT = /^(?:km\/h|m\/s\^2|m\/s|ms|s|m|unitless)(?![A-Za-z0-9_^(])/;
 const SORTS = /^(?:vehicles|vehicle|lanelet|lane)\b/;
 
@@ -60,6 +60,9 @@ const LOGICAL = [
   ["F", "eventually: F p, F[0, 3 s] p"],
   ["G", "always: G p, G[0, 3 s] p"],
   ["U", "until: p U q"],
+  ["O", "once, at an earlier time or now: O p, O[0, 3 s] p"],
+  ["H", "historically, at all times so far: H p, H[0, 3 s] p"],
+  ["S", "since: p S q"],
   ["not", "negation"],
   ["and", "conjunction"],
   ["or", "disjunction"],
