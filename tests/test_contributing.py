@@ -186,8 +186,8 @@ def test_an_operator_that_only_the_parser_knows_is_never_taken_for_another(copy)
     """A reader once took every operator that it did not know for G, which gave a false PROVED."""
     apply(copy, OPERATOR)
     parse = "from roadproof.logic.parse import parse_claim; print(parse_claim({!r}).body.op)"
-    assert run(copy, parse.format("O[1 s, 2 s] v_lon(SV) > 1 m/s")) == ["O"]
-    for claim in ("O true", "G true -> O true", "O[1 s, 2 s] v_lon(SV) > 1 m/s"):
+    assert run(copy, parse.format("N[1 s, 2 s] v_lon(SV) > 1 m/s")) == ["N"]
+    for claim in ("N true", "G true -> N true", "N[1 s, 2 s] v_lon(SV) > 1 m/s"):
         for command in ("prove", "witness"):
             done = begin(copy, "-m", "roadproof", command, claim)
             assert done.returncode not in (0, 10), done.stdout

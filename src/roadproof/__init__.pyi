@@ -48,8 +48,13 @@ from roadproof.frontends.api.phrases import POV2 as POV2
 from roadproof.frontends.api.phrases import SV as SV
 from roadproof.frontends.api.phrases import F as F
 from roadproof.frontends.api.phrases import G as G
+from roadproof.frontends.api.phrases import H as H
 from roadproof.frontends.api.phrases import L as L
+from roadproof.frontends.api.phrases import O as O
+from roadproof.frontends.api.phrases import R as R
+from roadproof.frontends.api.phrases import S as S
 from roadproof.frontends.api.phrases import U as U
+from roadproof.frontends.api.phrases import W as W
 from roadproof.frontends.api.phrases import adjacent_lanes as adjacent_lanes
 from roadproof.frontends.api.phrases import call as call
 from roadproof.frontends.api.phrases import every as every

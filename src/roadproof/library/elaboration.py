@@ -13,6 +13,7 @@ from typing import TypeVar, assert_never
 from roadproof.errors import Position, TextError
 from roadproof.library import arithmetic, mistakes, scopes
 from roadproof.library.notes import ElaborationCache, FormulaNote, UnreadableNameError, UsedDefinitions
+from roadproof.library.operators import edge, temporal
 from roadproof.library.quantity import Quantity, Sizes
 from roadproof.library.scopes import SORTS, Free, Ref, Scope, Value, Vehicles
 from roadproof.library.specification import BUILT_IN, Specification, source_of, unknown_name
@@ -37,7 +38,8 @@ class Elaborator:
 
     With ``errors``, mistakes are added to it and elaboration goes on. ``lost``: patterns of names whose
     declarations could not be read, which cause no errors. ``notes``: if it is a list, the formula of each
-    expression is added. ``at_start``: whether what is read is about time 0. ``used_definitions``: every definition applied so far, also from the cache ``known``.
+    expression is added. ``at_start``: whether what is read is about time 0. ``used_definitions``: every
+    definition applied so far, also from the cache ``known``.
     """
 
     specification: Specification
@@ -288,7 +290,7 @@ class Elaborator:
                 goal = self.formula(right, scope)
                 first = f.TRUE if left is None else self.formula(left, scope)
                 self.at_start = is_at_start
-                return _temporal(op, first, interval, goal)
+                return temporal(op, first, interval, goal)
             case syntax.Quantified():
                 return self._quantified(expression, scope)
 
@@ -358,11 +360,7 @@ class Elaborator:
     def _quantified(self, expression: syntax.Quantified, scope: Scope) -> Formula:
         variable = expression.variable
         if expression.at_start and (self.stack or not self.at_start):
-            raise TextError(
-                "'let' names the lane at time 0, so it stands in claims only, outside of temporal operators",
-                expression.at,
-                "Write it in front: let L = lane of SV at start: F p(L).",
-            )
+            raise mistakes.late_let(expression.at)
         scopes.refuse_signal(variable, self.specification.library.signals, expression.at)
         vehicles = scopes.vehicles_in(expression.domain, scope, self._free_names)
         if vehicles is not None:
@@ -377,19 +375,6 @@ class Elaborator:
         body = self.formula(expression.body, {**scope, variable: Ref(sort, unique)})
         return (f.Every if expression.kind == "every" else f.Some)(unique, domain, body)
 
-    def _edge(self, name: str, call: syntax.Call, scope: Scope) -> Formula:
-        """Return ``rise(p, d)``: p holds, and did not at some time of the last d; ``fall``: so for not p."""
-        if len(call.arguments) != 2:
-            raise TextError(
-                f"'{name}' takes a formula and a time, but got {len(call.arguments)} arguments",
-                call.at,
-                f"Time is dense and has no previous instant: write {name}(p, 0.1 s); for samples, their step.",
-            )
-        state = self.formula(call.arguments[0], scope)
-        back = f.Interval(f.ZERO, self._bound(call.arguments[1], scope))
-        now, before = (state, f.negation(state)) if name == "rise" else (f.negation(state), state)
-        return f.conjunction(now, f.once(back, before))
-
     def _built_in(self, call: syntax.Call, name: str, scope: Scope) -> Formula | Quantity:
         if name in ("lanes", "lanelets", "zone", "adjacentLanes"):
             raise TextError(f"'{name}' is a domain: write some x in {name}…", call.at)
@@ -400,7 +385,9 @@ class Elaborator:
         if name == "kind":
             raise TextError("a kind is no number", call.at, f"Compare it: kind(SV) = {KINDS[1]}.")
         if name in ("rise", "fall"):
-            return self._edge(name, call, scope)
+            mistakes.refuse_arity_of_edge(name, call)
+            time = self._bound(call.arguments[1], scope)
+            return edge(name, self.formula(call.arguments[0], scope), time)
         mistakes.refuse_arity(name, 2 if name == "occ" else 1, call)
         first = call.arguments[0]
         if name == "occ":
@@ -410,26 +397,3 @@ class Elaborator:
             make = arithmetic.absolute if name == "abs" else arithmetic.inverse
             return make(self.term(first, scope), call.at)
         return arithmetic.of_vehicle(name, self.reference(first, "vehicle", scope).name)
-
-
-def _temporal(op: syntax.TemporalOperator, left: Formula, interval: f.Interval, right: Formula) -> Formula:
-    """Return the formula of a temporal operator; ``left`` counts for those with two sides."""
-    match op:
-        case "U":
-            return f.Until(left, interval, right)
-        case "S":
-            return f.Since(left, interval, right)
-        case "W":
-            return f.weak_until(left, interval, right)
-        case "R":
-            return f.release(left, interval, right)
-        case "F":
-            return f.Eventually(interval, right)
-        case "G":
-            return f.Always(interval, right)
-        case "O":
-            return f.once(interval, right)
-        case "H":
-            return f.historically(interval, right)
-        case _:
-            assert_never(op)

@@ -43,3 +43,23 @@ def refuse_deeper(depth: int, at: Position) -> None:
             at,
             "Look for a chain of definitions that only call each other.",
         )
+
+
+def refuse_arity_of_edge(name: str, call: syntax.Call) -> None:
+    """Raise ``TextError`` unless ``rise`` or ``fall`` has a formula and a time."""
+    if len(call.arguments) != 2:
+        raise TextError(
+            f"'{name}' takes a formula and a time, but got {len(call.arguments)} argument"
+            + "s" * (len(call.arguments) != 1),
+            call.at,
+            f"Time is dense and has no previous instant: write {name}(p, 0.1 s); for samples, their step.",
+        )
+
+
+def late_let(at: Position) -> TextError:
+    """Return the error of a ``let`` that is not about time 0."""
+    return TextError(
+        "'let' names the lane at time 0, so it stands in claims only, outside of temporal operators",
+        at,
+        "Write it in front: let L = lane of SV at start: F p(L).",
+    )

@@ -178,10 +178,12 @@ class SyntaxBuilder(Transformer_NonRecursive[Token, Any]):
         return syntax.Quantified(kind, str(items[1]), items[2], items[3], _at(meta))
 
     def lane_at_start(self, meta: Meta, items: list[Any]) -> Expression:
-        """Return ``let L = lane of a at start: p`` as ``some L in lanes: atLane(a, L) and p``."""
+        """Return ``let L = lane of a at start: p`` as "a is in some lanelet of some lane L, and p"."""
         lane, vehicle, body = items
-        names = (syntax.Name(str(x), _token_at(x)) for x in (vehicle, lane))
-        inside = syntax.Call("atLane", tuple(names), _token_at(vehicle))
+        where, at = f"{lane}_lanelet", _token_at(vehicle)
+        occupies = syntax.Call("occ", (syntax.Name(str(vehicle), at), syntax.Name(where, at)), at)
+        lanelets = syntax.Call("lanelets", (syntax.Name(str(lane), at),), at)
+        inside = syntax.Quantified("some", where, lanelets, occupies, at)
         both = syntax.Chain("and", (inside, body), _at(meta))
         return syntax.Quantified("some", str(lane), syntax.Name("lanes"), both, _at(meta), at_start=True)
 

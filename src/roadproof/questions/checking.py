@@ -202,15 +202,8 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     ]
     specs = tuple(folder / Path(x.name).name for x in question.basis.library.files)
     specs = tuple(x for x in specs if x.is_file())
-    beside = {x for x in folder.iterdir() if x.suffix != ".json" and not x.is_dir()} - {*specs}
-    within = {x.parent for x in folder.rglob(QUESTION)} - {folder}  # folders of their own
-    strays = [x for x in folder.rglob("*.json") if x.parent != folder and within.isdisjoint(x.parents)]
-    problems += [
-        Finding(str(path), "", Acceptance.REJECTED, ReasonKind.NOT_ITS_ANSWER()) for path in sorted(strays)
-    ]
-    links = sorted(x for x in folder.iterdir() if x.is_symlink() and x.is_dir())
-    problems += [Finding(str(path), "", Acceptance.REJECTED, ReasonKind.LINK()) for path in links]
-    others = tuple(sorted(x.name for x in beside))
+    problems += _strays(folder)
+    others = {x.name for x in folder.iterdir() if x.suffix != ".json" and not x.is_dir() and x not in specs}
     fingerprint = library_of(Fields(read_json(folder / QUESTION, LARGEST_INDEX), str(folder / QUESTION)))
     return QuestionFolder(
         folder,
@@ -218,11 +211,21 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
         specs,
         answers,
         tuple(problems),
-        others,
+        tuple(sorted(others)),
         frozenset(missing),
         frozenset(refused),
         fingerprint != question.basis.library.fingerprint,
     )
+
+
+def _strays(folder: Path) -> Iterator[Finding]:
+    """Yield a finding for each answer in a folder below that is no question of its own, and for each link."""
+    within = {x.parent for x in folder.rglob(QUESTION)} - {folder}  # folders of their own
+    strays = [x for x in folder.rglob("*.json") if x.parent != folder and within.isdisjoint(x.parents)]
+    for path in sorted(strays):
+        yield Finding(str(path), "", Acceptance.REJECTED, ReasonKind.NOT_ITS_ANSWER())
+    for path in sorted(x for x in folder.iterdir() if x.is_symlink() and x.is_dir()):
+        yield Finding(str(path), "", Acceptance.REJECTED, ReasonKind.LINK())
 
 
 def _problem(
