@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -81,8 +81,10 @@ def test_the_summary_counts_each_outcome() -> None:
 
 
 def test_answers_without_evidence_are_counted_apart() -> None:
-    found = [finding(Acceptance.ACCEPTED), finding(Acceptance.ACCEPTED, MISSING_EVIDENCE)]
-    assert summary(found, "z3") == "1 of 1 accepted by z3 and the exact judge; 1 without evidence"
+    missing = finding(Acceptance.ACCEPTED, MISSING_EVIDENCE)
+    found = [finding(Acceptance.ACCEPTED), replace(missing, verdict="UNKNOWN")]
+    line = summary(found, "z3")
+    assert line == "1 of 1 accepted by z3 and the exact judge; 1 with nothing to check: 1 UNKNOWN"
 
 
 def test_the_exit_code_is_that_of_the_gravest() -> None:

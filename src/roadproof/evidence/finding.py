@@ -1,5 +1,6 @@
 """Findings: the results of checking evidence, their summary and exit code."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 from typing import Annotated, Final, Literal, TypeAlias
@@ -165,8 +166,11 @@ def summary(findings: Sequence[Finding], solver: str) -> str:
     for outcome in (Acceptance.REJECTED, Acceptance.UNDECIDED, Acceptance.UNREADABLE, Acceptance.FAULT):
         count = sum(finding.outcome is outcome for finding in with_evidence)
         line += f", {count} {outcome}" if count else ""
-    without_evidence = len(findings) - len(with_evidence)
-    return line + (f"; {without_evidence} without evidence" if without_evidence else "")
+    verdicts = Counter(finding.verdict for finding in findings if finding.kind == NO_EVIDENCE)
+    if not verdicts:
+        return line
+    counts = ", ".join(f"{count} {verdict}" for verdict, count in sorted(verdicts.items()))
+    return f"{line}; {verdicts.total()} with nothing to check: {counts}"
 
 
 def checkers(findings: Sequence[Finding], solver: str) -> str:

@@ -41,7 +41,7 @@ TestOutcome: TypeAlias = Literal["scenarios", "nothing", "unreadable", ""]
 """What a concrete test shows: at least one scenario, none, or its file cannot be read; empty of all else."""
 
 
-TestedSide: TypeAlias = Literal["preventable", "unpreventable", "not foreseen", "undecided", "partly"]
+TestedSide: TypeAlias = Literal["preventable", "unpreventable", "not covered", "undecided", "partly"]
 
 
 @dataclass(frozen=True, kw_only=True)

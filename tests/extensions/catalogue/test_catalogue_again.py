@@ -81,7 +81,7 @@ def test_the_answer_is_accepted_and_says_what_was_judged(home: Path) -> None:
     checked = rp.check(home / "report", jobs=1)
     assert checked.exit_code is ExitCode.AS_EXPECTED
     told = str(checked)
-    assert "JUDGED    test LEAD  shows endangered, scenario_4  [judged again in dense time" in told
+    assert "JUDGED    test LEAD  shows dangerArises, scenario_4  [judged again in dense time" in told
     assert "WITNESSED wide runs  scenario_4(SV, POV, L)" in told
     assert "PROVED    wide implies scenario_4  scenario_4(SV, POV, L) -> scenario_4(SV, POV, L)" in told
     assert not checked.not_checked

@@ -132,7 +132,7 @@ def test_a_drive_is_decided_when_its_manoeuvre_begins(model: str, gap: int, side
     [found] = [x for x in decide_drive(file, DRIVERS, "scenario_1", kind.vehicles, 0.0) if x.driver == model]
     assert (found.side, found.at, found.start["dx0"], found.reason) == (side, 0.0, gap, "")
     late = decide_drive(file, DRIVERS, "scenario_1", kind.vehicles, 5.0)
-    assert {x.side for x in late} == {"not foreseen"}
+    assert {x.side for x in late} == {"not covered"}
 
 
 @pytest.mark.parametrize("said", ["", "not "])
@@ -195,7 +195,7 @@ def test_when_a_manoeuvre_begins(
         made = list(found)
         assert {x.at for x in made} == {begins}
         assert [x.driver for x in made] == ["careful", "rss", "fsm"]
-        assert (begins is None) is ({x.side for x in made} == {"not foreseen"})
+        assert (begins is None) is ({x.side for x in made} == {"not covered"})
 
 
 def test_danger_before_a_cut_out_is_that_of_the_vehicle_behind_which_it_opens() -> None:

@@ -28,7 +28,7 @@ from roadproof.reasons import NO_REASON, ReasonKind
         (("preventable",), "undecided"),
         (("unpreventable", "unpreventable"), "undecided"),
         (("preventable", "undecided"), "undecided"),
-        (("unpreventable", "not foreseen", "preventable"), "partly"),
+        (("unpreventable", "not covered", "preventable"), "partly"),
     ],
 )
 def test_drives_on_one_side_decide_nothing_of_a_formula(

@@ -162,9 +162,9 @@ def test_what_is_never_foreseen(questions: EvaluationQuestions) -> None:
     """POV drifts in without a speed across; it is in the way of SV, which comes nearer, and never brakes."""
     (_, recording), *_ = drives("cut-in", "careful", "unpreventable")
     drifting = replace(recording, v_lat=0 * recording.v_lat)
-    assert told(drifting, questions, "careful") == {(1, None, "not foreseen")}
+    assert told(drifting, questions, "careful") == {(1, None, "not covered")}
     slow = make_recording([Track(2, 0, cruise(0, 30, 250)), Track(2, 0, cruise(150, 20, 250))])
-    assert told(slow, questions, "careful") == {(4, None, "not foreseen")}
+    assert told(slow, questions, "careful") == {(4, None, "not covered")}
 
 
 def test_what_begins_late_is_put_into_the_same_motion(questions: EvaluationQuestions) -> None:
@@ -183,7 +183,7 @@ def test_check_names_a_label_that_is_wrong(questions: EvaluationQuestions) -> No
     for wrong in (
         replace(match, labels=("preventable",) * 4),
         replace(match, begun=BEFORE + 1),
-        replace(match, begun=None, labels=("not foreseen",) * 4),
+        replace(match, begun=None, labels=("not covered",) * 4),
     ):
         others = tuple(wrong if x is match else x for x in found.matches)
         (denied,) = recheck(recording, questions, replace(found, matches=others))
@@ -222,7 +222,7 @@ def test_the_same_in_windows(questions: EvaluationQuestions) -> None:
     whole, windows = evaluate_recording(traffic, questions), evaluate_windows(made, questions)
     labelled = [[(x, x.begun, x.labels) for x in found.matches] for found in (whole, windows)]
     assert labelled[0] == labelled[1]
-    assert {label for x in whole.matches for label in x.labels} >= {"preventable", "not foreseen"}
+    assert {label for x in whole.matches for label in x.labels} >= {"preventable", "not covered"}
 
 
 # --- whole runs --------------------------------------------------------------------------------
@@ -281,7 +281,7 @@ def test_columns_table_and_what_stays(folder: Path, tmp_path: Path) -> None:
         (x["set"], x["min_danger"], x["scenario"], x["driver"]): x["preventable"]
         + x["unpreventable"]
         + x["undecided"]
-        + x["not_foreseen"]
+        + x["not_covered"]
         for x in told["drivers"]
     }
     assert len(counted) == 2 * 2 * 4
@@ -298,7 +298,7 @@ def test_from_python(folder: Path) -> None:
     assert rows.height == sum(
         x[label]
         for x in found.as_data()["drivers"]
-        for label in ("preventable", "unpreventable", "undecided", "not_foreseen")
+        for label in ("preventable", "unpreventable", "undecided", "not_covered")
     )
     assert "Matches by whether a driver model" in str(found)
 

@@ -236,7 +236,7 @@ def check(
                 if (x["min_danger"], x["set"], f"s{x['scenario']}")
                 == (row["minDanger"], row["set"], row["scenario"])
             ]
-            for label in ("preventable", "unpreventable", "not foreseen"):
+            for label in ("preventable", "unpreventable", "not covered"):
                 assert row[label] == str(ours.count(label))
     return counts
 
@@ -362,8 +362,8 @@ def test_cells_are_empty_where_a_model_says_nothing() -> None:
     kept = {"sv": 1, "pov": 2, "pov2": None, "lane": "2", "start_frame": 0, "end_frame": 9, "min_danger": 0}
     made = Match(**kept, set_name="base", scenario=4, begun=5, labels=("", "preventable", "unpreventable"))
     assert driver_cells(SETTINGS, made) == [None, None, "preventable", 5, "unpreventable", 5]
-    made = Match(**kept, set_name="base", scenario=4, labels=("", "not foreseen", "not foreseen"))
-    assert driver_cells(SETTINGS, made) == [None, None, "not foreseen", None, "not foreseen", None]
+    made = Match(**kept, set_name="base", scenario=4, labels=("", "not covered", "not covered"))
+    assert driver_cells(SETTINGS, made) == [None, None, "not covered", None, "not covered", None]
     assert driver_cells(SETTINGS, Match(**kept, set_name="base", scenario=7)) == [None] * 6
 
 

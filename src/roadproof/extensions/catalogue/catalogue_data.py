@@ -64,8 +64,8 @@ class ShownTarget:
     what: Annotated[
         Name,
         Doc(
-            "A scenario, a class, endangered (safe, and danger comes), gap (danger that no scenario covers), "
-            "or a class of gaps."
+            "A scenario, a class, dangerArises (safe at first, then danger), gap (danger that no scenario "
+            "covers), or a class of gaps."
         ),
     ]
     vehicles: Vehicles
@@ -286,7 +286,7 @@ class CatalogueData(CatalogueHeading, headings.AnswerHeading):
     facts: tuple[FactData, ...]
     faults: Annotated[Remarks, Doc("Tests that are not what they claim, show nothing or cannot be read.")]
     doubts: Annotated[Remarks, Doc("Whether an abstract test can be run, or can show what it claims.")]
-    alike: Annotated[Remarks, Doc("Tests that say the same.")]
+    alike: Annotated[Remarks, Doc("Tests with the same verdicts and the same start.")]
     contradictions: Annotated[Remarks, Doc("What was seen although it is proved never to be.")]
     notes: tuple[str, ...]
     left_out: headings.LeftOutParts = ()

@@ -66,7 +66,7 @@ class DriverBatch:
 def driver_batches(basis: Basis, drivers: Drivers, tests: Iterable[ConcreteAnswer]) -> Iterator[DriverBatch]:
     """Yield a batch for each test that is an existing drive file on which a model decides something."""
     for x in tests:
-        decides = any(decision.side != "not foreseen" for decision in x.decisions)
+        decides = any(decision.side != "not covered" for decision in x.decisions)
         if x.dense and decides and not x.fault and Path(x.entry.place).is_file():
             yield DriverBatch(basis, drivers, x)
 

@@ -231,8 +231,10 @@ def _duplicates(concrete: Sequence[ConcreteAnswer], near: float) -> Iterator[Rem
     for first, *others in (cluster for clusters in groups.values() for cluster in clusters):
         if others:
             apart = max(_difference(first, x) for x in others)
-            text = f"begin within {apart:.2g} of the first (m, m/s)" if apart > _ROUNDING else "begin alike"
-            yield Remark((first.entry.id, *(x.entry.id for x in others)), f"show the same and {text}")
+            text = (
+                f"starts within {apart:.2g} (m, m/s) of the first" if apart > _ROUNDING else "the same start"
+            )
+            yield Remark((first.entry.id, *(x.entry.id for x in others)), f"the same verdicts and {text}")
 
 
 def _difference(one: ConcreteAnswer, other: ConcreteAnswer) -> float:

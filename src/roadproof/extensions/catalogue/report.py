@@ -197,7 +197,7 @@ def sheet_of(
                 "possible_in",
                 lambda x: ", ".join(x.possible),
                 "" if possible else "frame",
-                "some of whose drives do",
+                "tests of which some drives show it",
             ),
         ),
         targets,
@@ -210,7 +210,7 @@ def headings(targets: Targets) -> dict[str, Sequence[Remark]]:
         "readers contradict each other": targets.contradictions,
         "not what they claim": targets.faults,
         "in doubt": targets.doubts,
-        "say the same": targets.alike,
+        "duplicate tests": targets.alike,
     }
 
 

@@ -26,4 +26,4 @@ class DriverVerdict:
         Mapping[str, float],
         Doc("The state when the manoeuvre begins, as the sheets of UN R157 name it (SI)."),
     ]
-    reason: Annotated[str, Doc("Why it is not foreseen or undecided, and what is to be known of the start.")]
+    reason: Annotated[str, Doc("Why it is not covered or undecided, and what is to be known of the start.")]

@@ -24,7 +24,7 @@ CLOSED = "</script><script>alert(1)</script>"
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 NO_BROWSER = "there is no chromium here: install it, for instance apt-get install chromium"
 
-_LABELS = ("preventable", "undecided", "not_foreseen")
+_LABELS = ("preventable", "undecided", "not_covered")
 
 
 @pytest.fixture(scope="module")
@@ -465,7 +465,7 @@ def test_a_cell_of_a_catalogue_leads_to_the_judged_drive_of_its_test(tmp_path):
         ],
         targets=[target(1, "one", "wrong"), target(5, "five"), target(4, "four", "right", "away", "all")],
         facts=[a_fact(test="all", other="scenario_1", relation="excludes", verdict="PROVED")],
-        alike=[{"tests": ["right", "away"], "told": "show the same"}],
+        alike=[{"tests": ["right", "away"], "told": "the same verdicts and the same start"}],
     )
     (tmp_path / "tests.json").write_text(json.dumps(answer), "utf-8")
     found, text = made(tmp_path / "tests.json", out=tmp_path / "page.html")
@@ -478,7 +478,7 @@ def test_a_cell_of_a_catalogue_leads_to_the_judged_drive_of_its_test(tmp_path):
     assert 'href="#test-0-3" title="all drives of all show scenario_4: that is proved"' in seen
     assert 'title="all says that it is scenario_1, and does not show it"' in seen
     assert 'title="all says that it is scenario_5, and nobody knows whether it can"' in seen
-    assert "<li>right and away: show the same</li>" in seen
+    assert "<li>right and away: the same verdicts and the same start</li>" in seen
     assert "scenario_4(SV,POV,L)" in means
 
 

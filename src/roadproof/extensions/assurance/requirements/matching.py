@@ -295,7 +295,7 @@ def _side_state(side: TestedSide, required: str) -> LinkState:
             return LinkState.WITNESSED if side == required else LinkState.REFUTED
         case "partly":
             return LinkState.REFUTED
-        case "not foreseen" | "undecided":
+        case "not covered" | "undecided":
             return LinkState.UNKNOWN
         case _:
             assert_never(side)

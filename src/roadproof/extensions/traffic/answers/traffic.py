@@ -121,7 +121,7 @@ class DriverLabelsData:
     undecided: Annotated[
         shared.Count, Doc("Those in which SV passes POV first, after which nothing is claimed.")
     ]
-    not_foreseen: Annotated[shared.Count, Doc("Those in which the manoeuvre never begins.")]
+    not_covered: Annotated[shared.Count, Doc("Those in which the manoeuvre never begins.")]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -154,7 +154,7 @@ def decide_drive(
     begins, start = drivers.begins(manoeuvre, vehicles), Fraction(since)
     cut = first_cut(judge(begins, file.drive).truth(begins), start)
     if cut is None:
-        yield from _not_foreseen(drivers, manoeuvre, scenario, vehicles)
+        yield from _not_covered(drivers, manoeuvre, scenario, vehicles)
         return
     at, state = as_float(cut.point), _state_at(file, cut).start(manoeuvre, vehicles)
     for model in drivers.of(manoeuvre):
@@ -209,7 +209,7 @@ def decide_trace(
     first = round(since / float(batch.dt))
     begin = next((k for k in range(first, int(batch.lengths[0])) if true[k]), None)
     if begin is None:
-        yield from _not_foreseen(drivers, manoeuvre, scenario, names)
+        yield from _not_covered(drivers, manoeuvre, scenario, names)
         return
     state = InitialState(
         {
@@ -255,12 +255,12 @@ def decide_formula(
 # --- both ----------------------------------------------------------------------------------------
 
 
-def _not_foreseen(
+def _not_covered(
     drivers: Drivers, manoeuvre: ManoeuvreName, scenario: str, vehicles: tuple[str, ...]
 ) -> Iterator[Decision]:
     reason = ReasonKind.NOT_BEGUN(manoeuvre)
     for model in drivers.of(manoeuvre):
-        yield Decision(scenario, vehicles, model, "not foreseen", reason=reason)
+        yield Decision(scenario, vehicles, model, "not covered", reason=reason)
 
 
 def _decision(

@@ -22,7 +22,7 @@ from roadproof.extensions.traffic.evaluate.traces import blocks, gather, gather_
 from roadproof.extensions.traffic.formats.recording import Integers, Recording
 from roadproof.world.road import Road
 
-Label: TypeAlias = Literal["preventable", "unpreventable", "undecided", "not foreseen"]
+Label: TypeAlias = Literal["preventable", "unpreventable", "undecided", "not covered"]
 LABELS: tuple[Label, ...] = get_args(Label)
 RESULTS: Mapping[Result, Label] = {
     Result.PREVENTED: "preventable",
@@ -118,7 +118,7 @@ def label_of(course: ManoeuvreTest, scene: SampledScene | None, driver: str) -> 
     if model is None:
         return ""
     if scene is None:
-        return "not foreseen"
+        return "not covered"
     return RESULTS[replay_samples(scene, course.name, model, course.settings).result]
 
 

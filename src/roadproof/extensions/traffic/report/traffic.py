@@ -169,7 +169,7 @@ def drivers_table(totals: Totals) -> ReportTable | None:
     rows = [
         (
             *(decimal(Fraction(x.min_danger)), x.set, f"s{x.scenario}", x.driver),
-            *map(str, (x.preventable, x.unpreventable, x.undecided, x.not_foreseen)),
+            *map(str, (x.preventable, x.unpreventable, x.undecided, x.not_covered)),
         )
         for x in driver_label_rows(totals)
     ]
