@@ -159,3 +159,12 @@ def _until(left: Array, low: int, high: int | None, right: Array) -> Array:
         left_least = np.minimum(left_least, left[j - 1 : j - 1 + count])
         best = np.maximum(best, np.minimum(right[j : j + count], left_least))
     return best
+
+
+def clamped_to_verdict(margin: float, holds: bool) -> float:
+    """Return a sampled margin, cut off at 0 where the judge contradicts its sign.
+
+    In dense time the margin of a true formula is not below 0, and that of a false one not above: samples miss
+    events between them, and the first instant that an open condition lacks.
+    """
+    return max(margin, 0.0) if holds else min(margin, 0.0)
