@@ -6,6 +6,7 @@ lowest bit is the newest value.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Self, assert_never
 
 from roadproof.extensions.exchange.streaming.plan import (
@@ -88,6 +89,8 @@ class _Step:
         self.values: list[int] = []
         # The value of each operator without a bound at this sample, as a table over those at the next one.
         self.next = [_variable_table(i, self.plan.rows) for i in range(self.plan.variables)]
+        # For each row of a table over values at the next sample, the row of one over values at this sample.
+        self.rows: list[int] | None = None
 
     def evaluate(self, k: int, node: PlanNode) -> None:
         """Find the value of node ``k``, and remember it for as long as it is read."""
@@ -101,11 +104,12 @@ class _Step:
 
     def rewrite(self, table: int) -> int:
         """Return a table over values at this sample as one over values at the next sample."""
-        rewritten = 0
-        for row in range(self.plan.rows):
-            now = sum((table_of >> row & 1) << i for i, table_of in enumerate(self.next))
-            rewritten |= (table >> now & 1) << row
-        return rewritten
+        if table in (0, self.full):
+            return table
+        if self.rows is None:
+            bits = [(x, i) for i, x in enumerate(self.next)]
+            self.rows = [sum((x >> row & 1) << i for x, i in bits) for row in range(self.plan.rows)]
+        return sum((table >> now & 1) << row for row, now in enumerate(self.rows))
 
     def _value(self, k: int, node: PlanNode) -> int:
         match node.operation:
@@ -166,7 +170,7 @@ class _Step:
             value = right | (self._padded(operation.left, node) & later)
         else:
             value = right & later if operation.universal else right | later
-        self.next[operation.variable] = value
+        self.next[operation.variable], self.rows = value, None
         return value
 
     def _read(self, operand: Operand, node: PlanNode) -> int:
@@ -203,6 +207,7 @@ class _Step:
         return self.full if node.table else 1
 
 
+@cache
 def _variable_table(variable: int, rows: int) -> int:
     """Return the table of a variable: in each row it has the bit of the row's number."""
     return sum((row >> variable & 1) << row for row in range(rows))

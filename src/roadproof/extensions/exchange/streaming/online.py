@@ -13,7 +13,7 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.extensions.exchange.streaming.interpreter import PlanState
 from roadproof.extensions.exchange.streaming.plan import Plan
-from roadproof.extensions.exchange.streaming.sample import SampleField, Source
+from roadproof.extensions.exchange.streaming.sample import Lane, SampleField, Source
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare
 from roadproof.semantics.sampled.arithmetic import run, truth_program
@@ -128,8 +128,7 @@ class OnlineMonitor:
             found = run(self._program, batch, _ONE, _ONE)
         except InputError as error:
             raise InputError(f"{number} is rejected: {error}") from None
-        flags: dict[object, float] = {**values}
-        seen = [bool(flags.get(leaf, False)) for leaf in self._plan.leaves]
+        seen = [isinstance(leaf, Lane) and bool(values[leaf]) for leaf in self._plan.leaves]
         for place, truth in zip(self._places, found, strict=True):
             seen[place] = bool(truth[0, 0])
         return seen
