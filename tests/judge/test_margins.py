@@ -163,7 +163,7 @@ def test_pieces_begin_where_parts_cross():
     ]
     assert float(bounds(found.pieces[1][0], SEVENTH**20)[0]) == pytest.approx(7**0.5 - 1)
     assert str(found).splitlines() == [
-        "robustness over time, exact, pieces of polynomials: 2:",
+        "robustness over time, exact, in 2 pieces:",
         "  least    -1 at 4 s, up to 4 s",
         "  above 0  (0, 3)",
         "  below 0  (3, ∞)",

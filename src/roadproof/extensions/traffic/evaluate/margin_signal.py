@@ -140,7 +140,7 @@ class RobustnessSignal(Table):
         if isinstance(self.exact, bool):
             return "exact, the same at every instant"
         if self.exact is not None:
-            return f"exact, pieces of polynomials: {len(self.pieces)}"
+            return f"exact, in {len(self.pieces)} piece{'s' if len(self.pieces) > 1 else ''}"
         grid = f", on a grid of {float(self.dt):g} s, as {self.sampled}" if self.sampled else ""
         return f"a value at each of {len(self)} samples{grid}"
 
