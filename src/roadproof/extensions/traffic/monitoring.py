@@ -19,7 +19,6 @@ from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_js
 from roadproof.extension import entries, import_entry
 from roadproof.extensions.traffic.answers import monitor as monitor_data
 from roadproof.extensions.traffic.answers.monitor import MonitoredTraceData, OverrideData, Truth
-from roadproof.extensions.traffic.answers.robust_signal import ended, finite, signal_data
 from roadproof.extensions.traffic.evaluate import on_trace as driven
 from roadproof.extensions.traffic.evaluate.decisions import Decision
 from roadproof.extensions.traffic.evaluate.margin_signal import RobustnessSignal
@@ -41,6 +40,7 @@ from roadproof.extensions.traffic.evaluate.one_trace import (
     sample_drive,
     with_causes,
 )
+from roadproof.extensions.traffic.evaluate.signal_data import ended, finite, signal_data
 from roadproof.extensions.traffic.formats.source import ReadDrive
 from roadproof.extensions.traffic.formats.sources import has_numbers
 from roadproof.extensions.traffic.formats.table import Frame, columns_of

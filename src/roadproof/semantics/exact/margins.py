@@ -90,8 +90,7 @@ class LeastValue:
 
 def least_value(pieces: Pieces, horizon: Fraction) -> LeastValue:
     """Return the least value of a function within [0, ``horizon``] (s), the first one of several."""
-    found = sorted(_candidates(pieces, horizon), key=lambda x: (x.value, not x.attained, x.time))
-    return found[0]
+    return min(_candidates(pieces, horizon), key=lambda x: (x.value, not x.attained, x.time))
 
 
 def value_at(pieces: Pieces, time: Point) -> Fraction:

@@ -13,9 +13,9 @@ from extensions.exchange.streaming.random_formulas import random_formula
 from extensions.traffic.monitoring.cases import DT, interval, random_batch, random_traffic, trace_of
 from planting import plant
 from roadproof.errors import InputError, UsageError
-from roadproof.extensions.exchange.streaming import interpreter, online
+from roadproof.extensions.exchange.streaming import online
 from roadproof.extensions.exchange.streaming.c_files import CSource, compile_c
-from roadproof.extensions.exchange.streaming.interpreter import PlanState
+from roadproof.extensions.exchange.streaming.interpreter import PlanState, _PlanStep
 from roadproof.extensions.exchange.streaming.online import OnlineMonitor
 from roadproof.extensions.exchange.streaming.plan import plan_of
 from roadproof.extensions.traffic.evaluate.recursive import SampledTrace, TraceReader
@@ -168,20 +168,20 @@ def test_scenarios_on_traffic() -> None:
 @pytest.mark.parametrize(
     ("owner", "name", "right", "wrong"),
     [
-        (interpreter._Step, "_bounded", "bool(operand) != universal", "bool(operand) == universal"),
-        (interpreter._Step, "_bounded", "left[k] = width + 1", "left[k] = width"),
-        (interpreter._Step, "_until", "min(self.state.waiting.get(k, 0), width)", "0"),
-        (interpreter._Step, "_until", "waiting if held and not met else 0", "0 if met else waiting"),
-        (interpreter._Step, "_forever", "(self._padded(operation.left, node) & later)", "later"),
-        (interpreter._Step, "_forever", "self.next[operation.variable], self.rows = value, None", "pass"),
-        (interpreter._Step, "_read", "if operand.lag and", "if False and"),
-        (interpreter._Step, "_padded", "self.ended > node.ready", "self.ended > 0"),
-        (interpreter._Step, "_end", "self.pad != node.opposite", "self.pad"),
-        (interpreter._Step, "_over", "self.ended - node.ready", "self.ended"),
-        (interpreter._Step, "_value", "met | (held & found)", "met | held"),
-        (interpreter._Step, "evaluate", "*map(self.rewrite, earlier[: node.kept])", "*earlier[: node.kept]"),
-        (interpreter._Step, "_forever", "= value, None", "= value, self.rows"),
-        (interpreter._Step, "rewrite", "(table >> now & 1) << row", "(table >> row & 1) << now"),
+        (_PlanStep, "_bounded", "bool(operand) != universal", "bool(operand) == universal"),
+        (_PlanStep, "_bounded", "left[k] = width + 1", "left[k] = width"),
+        (_PlanStep, "_until", "min(self.state.waiting.get(k, 0), width)", "0"),
+        (_PlanStep, "_until", "waiting if left and not met else 0", "0 if met else waiting"),
+        (_PlanStep, "_forever", "(self._padded(operation.left, node) & later)", "later"),
+        (_PlanStep, "_forever", "self.next[operation.variable], self.rows = value, None", "pass"),
+        (_PlanStep, "_read", "if operand.lag and", "if False and"),
+        (_PlanStep, "_padded", "self.ended > node.ready", "self.ended > 0"),
+        (_PlanStep, "_end", "self.pad != node.opposite", "self.pad"),
+        (_PlanStep, "_over", "self.ended - node.ready", "self.ended"),
+        (_PlanStep, "_value", "met | (now & until)", "met | now"),
+        (_PlanStep, "evaluate", "*map(self.rewrite, earlier[: node.kept])", "*earlier[: node.kept]"),
+        (_PlanStep, "_forever", "= value, None", "= value, self.rows"),
+        (_PlanStep, "rewrite", "(table >> now & 1) << row", "(table >> row & 1) << now"),
         (PlanState, "advance", "self.first = step.rewrite(self.first)", "pass"),
         (PlanState, "at_first", "self.plan.weak if weak else self.plan.strong", "self.plan.strong"),
         (OnlineMonitor, "step", "self._state.count <= self.delay", "self._state.count < self.delay"),

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 import roadproof as rp
 from examples import some
 from extensions.traffic.monitoring.cases import IN_LANE, ON_MAIN, formulas, interval, random_batch, trace_of
-from roadproof.extensions.traffic.answers.robust_signal import signal_data
 from roadproof.extensions.traffic.evaluate import margin_signal, observed
 from roadproof.extensions.traffic.evaluate.margin_signal import RobustnessSignal
 from roadproof.extensions.traffic.evaluate.observed import observe_samples
 from roadproof.extensions.traffic.evaluate.recursive import TraceReader, answer
+from roadproof.extensions.traffic.evaluate.signal_data import signal_data
 from roadproof.frontends.cli.main import main
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula

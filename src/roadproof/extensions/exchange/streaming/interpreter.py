@@ -62,7 +62,7 @@ class PlanState:
         first one if the plan is about that; what is to come then counts as ``pad``.
         """
         self.count += 1
-        step = _Step(self, seen, ended, pad)
+        step = _PlanStep(self, seen, ended, pad)
         for k, node in enumerate(self.plan.nodes):
             step.evaluate(k, node)
         newest = step.values[-1]
@@ -79,7 +79,7 @@ class PlanState:
         return bool(self.first >> (self.plan.weak if weak else self.plan.strong) & 1)
 
 
-class _Step:
+class _PlanStep:
     """The values of all nodes at one sample, written into the state as they are found."""
 
     def __init__(self, state: PlanState, seen: Sequence[bool], ended: int, pad: bool) -> None:
@@ -130,11 +130,11 @@ class _Step:
             case WindowOperation(universal, operand, width):
                 return self._bounded(k, universal, self._padded(operand, node), width)
             case BoundedUntil(left, right, width) if node.table:
-                found = 0
+                until = 0
                 lefts, rights = self._window(left, width, node), self._window(right, width, node)
-                for over, (held, met) in enumerate(zip(lefts, rights, strict=True)):
-                    found = self._end(node) if over < self._over(node) else met | (held & found)
-                return found
+                for over, (now, met) in enumerate(zip(lefts, rights, strict=True)):
+                    until = self._end(node) if over < self._over(node) else met | (now & until)
+                return until
             case BoundedUntil(left, right, width):
                 return self._until(k, self._padded(left, node), self._padded(right, node), width)
             case Forever():
@@ -151,14 +151,14 @@ class _Step:
         left[k] = max(0, remaining - 1)
         return int((remaining == 0) == universal)
 
-    def _until(self, k: int, held: int, met: int, width: int) -> int:
+    def _until(self, k: int, left: int, met: int, width: int) -> int:
         """Until over the last ``width`` + 1 values."""
         bits = self.state.met.get(k, 0) << 1 & ((2 << width) - 1)
         waiting = min(self.state.waiting.get(k, 0), width) + 1
         if met:
             bits |= (1 << waiting) - 1
         self.state.met[k] = bits
-        self.state.waiting[k] = waiting if held and not met else 0
+        self.state.waiting[k] = waiting if left and not met else 0
         return bits >> width & 1
 
     def _forever(self, operation: Forever, node: PlanNode) -> int:

@@ -125,11 +125,11 @@ class OnlineMonitor:
         number = f"sample {self.samples}"
         batch = Batch(self.dt, np.array([1]), signals, sizes, source=number)
         try:
-            found = run(self._program, batch, _ONE, _ONE)
+            truths = run(self._program, batch, _ONE, _ONE)
         except InputError as error:
             raise InputError(f"{number} is rejected: {error}") from None
         seen = [isinstance(leaf, Lane) and bool(values[leaf]) for leaf in self._plan.leaves]
-        for place, truth in zip(self._places, found, strict=True):
+        for place, truth in zip(self._places, truths, strict=True):
             seen[place] = bool(truth[0, 0])
         return seen
 
