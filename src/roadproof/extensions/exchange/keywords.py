@@ -26,7 +26,7 @@ class CompileKeywords(SearchPlaceKeywords, total=False):
     name: str
 
 
-class OnlineKeywords(TypedDict, total=False):
+class OnlineMonitorKeywords(TypedDict, total=False):
     dt: Number
     road: RoadLike | None
     lanes: Mapping[str, str] | None

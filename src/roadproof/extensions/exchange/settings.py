@@ -72,7 +72,7 @@ class Compile(groups.Values, groups.SearchPlace):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Online(Settings):
+class OnlineMonitorSettings(Settings):
     """Options of ``online_monitor``, which is for Python alone."""
 
     dt: Number = option(Fraction(1, 25))

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Unpack
 
 from roadproof.errors import UsageError
-from roadproof.extensions.exchange.settings import Online
+from roadproof.extensions.exchange.settings import OnlineMonitorSettings
 from roadproof.extensions.exchange.streaming.online import OnlineMonitor
 from roadproof.extensions.exchange.streaming.plan import plans_of
 from roadproof.extensions.exchange.streaming.sample import fields_of
@@ -17,16 +17,16 @@ from roadproof.library.bind import bind, refuse_variables
 from roadproof.logic.rewrite import with_values
 
 if TYPE_CHECKING:
-    from roadproof.extensions.exchange.keywords import OnlineKeywords
+    from roadproof.extensions.exchange.keywords import OnlineMonitorKeywords
     from roadproof.extensions.exchange.settings import Compile
     from roadproof.library.specification import Query
     from roadproof.logic.formula import Formula
     from roadproof.world.road import Road
 
 
-@takes(Online)
+@takes(OnlineMonitorSettings)
 def online_monitor(
-    what: What, using: Definitions | None = None, **options: Unpack[OnlineKeywords]
+    what: What, using: Definitions | None = None, **options: Unpack[OnlineMonitorKeywords]
 ) -> OnlineMonitor:
     """Return a monitor of a scenario or formula that takes one sample after the other.
 
@@ -36,7 +36,7 @@ def online_monitor(
     on that road. ``strict``: no part of its map may be left out. Raises ``InputError`` for bounds that are no
     multiple of ``dt``, and for more than six operators without a bound; ``TextError``, ``UsageError``.
     """
-    settings, home = Online.of(options), definitions_of(using)
+    settings, home = OnlineMonitorSettings.of(options), definitions_of(using)
     _, query = home.numbered(what)
     formula = stream_formula(query, home, settings.lanes, road_of_samples(settings))
     dt = positive("dt", settings.dt, "s")
@@ -44,7 +44,7 @@ def online_monitor(
     return OnlineMonitor(query.text, plan, dt, fields_of([formula]))
 
 
-def road_of_samples(settings: Compile | Online) -> Road | None:
+def road_of_samples(settings: Compile | OnlineMonitorSettings) -> Road | None:
     """Return the road on which relations to lanes are computed. Raises ``UsageError`` for lanes of none."""
     if settings.lanes and settings.road is None:
         raise UsageError("lanes: the lanes of which road? Name it, or leave lanes to the flags of samples")
