@@ -17,6 +17,7 @@ from roadproof.extensions.encoding.encode import encode as encode
 from roadproof.extensions.encoding.explaining import conflict as conflict
 from roadproof.extensions.exchange.compiling import compile as compile
 from roadproof.extensions.exchange.exporting import export as export
+from roadproof.extensions.exchange.watching import online_monitor as online_monitor
 from roadproof.extensions.maps.roads import road as road
 from roadproof.extensions.maps.roads import stretches as stretches
 from roadproof.extensions.pages.atlas.atlas import atlas as atlas

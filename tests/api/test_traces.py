@@ -315,6 +315,7 @@ ROOT = Path(__file__).parents[2]
 PAGES = [
     ROOT / "docs/reference/python.md",
     ROOT / "docs/how-to/jupyter.md",
+    ROOT / "docs/how-to/c.md",
     ROOT / "README.md",
     *sorted(Path(__file__).parent.joinpath("book").glob("*.md")),
 ]

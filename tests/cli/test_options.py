@@ -35,7 +35,7 @@ from roadproof.frontends.cli.overview import COMMANDS, groups
 from roadproof.frontends.cli.overview import COMMANDS as SUB_COMMANDS
 from roadproof.frontends.settings.flags import add_flags, is_rare, read_keywords
 from roadproof.frontends.settings.groups import DefinitionsSettings
-from roadproof.frontends.settings.option import Settings, stem_of
+from roadproof.frontends.settings.option import Settings, function_of
 from roadproof.frontends.settings.questions import Check, Prove, Witness
 from roadproof.questions.prove import ProveQuestion
 from roadproof.semantics.sampled.answers import Convention
@@ -175,7 +175,7 @@ def asked_of_prove(words: list[str]) -> ProveQuestion:
 
 @pytest.mark.parametrize("question", keywords_file.all_questions(), ids=lambda x: x.__name__)
 def test_a_function_shows_its_options(question: type) -> None:
-    parameters = inspect.signature(getattr(rp, stem_of(question).lower())).parameters
+    parameters = inspect.signature(getattr(rp, function_of(question))).parameters
     shown = {name: x for name, x in parameters.items() if x.kind is x.KEYWORD_ONLY}
     for name, option in question.options().items():
         assert (name in shown) == option.keyword

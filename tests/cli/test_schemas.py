@@ -73,7 +73,7 @@ OPTIONAL = {
     "classify.json": {"doubts"},
     "coverage.json": {"in_traffic", "trace"},
     "drive.json": {"lanes", "overlaps_allowed", "natural", "kind", "signals"},
-    "monitor.json": {"exact"},
+    "monitor.json": {"exact", "robust_signal", "sampled", "pieces"},
     "refutation.json": {"assuming", "drive_sought"},
     "undecided.json": {"assuming", "doubt", "limits", "work"},
     "preventable.json": {"boundary"},
@@ -280,6 +280,8 @@ def of_monitor(run: Run, out: Path, traffic: Path) -> None:
     other = run("monitor", 4, DRIVE, "--set", "ext", "--param", "rho=1", "--option", "speed=total")
     assert {x["what"].split()[0] for x in other["overruled"]} == {"set", "parameter", "option"}
     examine(dense, other, run("monitor", "F v_lon(SV) > 90 m/s", DRIVE, "--view", "recorded"))
+    for line in (["F v_lon(SV) > 90 m/s"], ["v_lon(SV) > 20 m/s"], [4, "--view", "recorded"]):
+        examine(run("monitor", line[0], DRIVE, *line[1:], "--robust-signal"))
 
 
 def of_evaluate(run: Run, out: Path, traffic: Path) -> None:

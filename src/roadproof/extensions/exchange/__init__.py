@@ -15,7 +15,11 @@ EXTENSION = Extension(
         "storyboards of OpenSCENARIO, which are run here",
         "problems of searches (mps, lp, smt2)",
     ),
-    functions={"export": "exporting:export", "compile": "compiling:compile"},
+    functions={
+        "export": "exporting:export",
+        "compile": "compiling:compile",
+        "online_monitor": "watching:online_monitor",
+    },
     completions=dict.fromkeys(("--to", "--format"), "completion:formats"),
     formats={"CommonRoad": "commonroad:FORMAT", "OpenSCENARIO": "openscenario:FORMAT", "OSI": "osi:FORMAT"},
     traces={".xosc": "openscenario:read_scenario"},

@@ -15,16 +15,15 @@ from roadproof.extensions.exchange.keywords import CompileKeywords
 from roadproof.extensions.exchange.settings import Compile
 from roadproof.extensions.exchange.streaming.c_files import FLAGS, CSource, compile_c
 from roadproof.extensions.exchange.streaming.functions import StreamMonitor
+from roadproof.extensions.exchange.watching import road_of_samples, stream_formula
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
-from roadproof.frontends.api.settings import as_road, positive
+from roadproof.frontends.api.settings import positive
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.sheet import aligned
 from roadproof.frontends.settings.option import takes
-from roadproof.library.bind import bind, refuse_variables
 from roadproof.library.scenarios import name_of
 from roadproof.library.specification import Query, unknown_name
-from roadproof.logic.formula import Application, Formula
-from roadproof.logic.rewrite import with_values
+from roadproof.logic.formula import Application
 from roadproof.runtime.files import lock_folder, write_atomic
 from roadproof.runtime.records import dataclass
 from roadproof.world.road import Road
@@ -146,11 +145,9 @@ def _named(home: Definitions, queries: Iterable[What]) -> dict[str, What]:
 def _compile_monitors(
     home: Definitions, named: Mapping[str, What], settings: Compile, out: Path | None
 ) -> CompiledMonitors:
-    if settings.lanes and settings.road is None:
-        raise UsageError("lanes: the lanes of which road? Name it, or leave lanes to the flags of samples")
-    road = None if settings.road is None else as_road(settings.road, settings.strict)
+    road = road_of_samples(settings)
     read = {name: home.numbered(x)[1] for name, x in named.items()}
-    formulas = {name: (x.text, _with_values(x, home, settings, road)) for name, x in read.items()}
+    formulas = {name: (x.text, stream_formula(x, home, settings.lanes, road)) for name, x in read.items()}
     dt = positive("dt", STEP if settings.dt is None else settings.dt, "s")
     source = compile_c(formulas, dt, settings.name, settings.memory)
     if out is None:
@@ -159,13 +156,6 @@ def _compile_monitors(
         for name, text in source.files.items():
             write_atomic(out / name, text.encode())
     return CompiledMonitors(source, out, road)
-
-
-def _with_values(query: Query, home: Definitions, settings: Compile, road: Road | None) -> Formula:
-    if road is not None:
-        return bind(query.formula, road, dict(settings.lanes or {}), home.all_values())
-    refuse_variables(query.formula)
-    return with_values(query.formula, home.all_values())
 
 
 def _identifier(number: int | None, query: Query, place: int) -> str:

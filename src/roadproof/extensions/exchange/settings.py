@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from roadproof.frontends.settings.readers import seconds, whole
 from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from roadproof.extensions.encoding.kinds import Drives
     from roadproof.frontends.settings.value_types import RoadLike
@@ -68,3 +69,13 @@ class Compile(groups.Values, groups.SearchPlace):
     )
     name: str = option("monitor", "--name NAME", "name of the files and of types (default: monitor)")
     out: str | Path | None = groups.folder_for("the files", command_line_only=True, required=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OnlineMonitorSettings(Settings):
+    """Options of ``online_monitor``, which is for Python alone."""
+
+    dt: Number = option(Fraction(1, 25))
+    road: RoadLike | None = option(None)
+    lanes: Mapping[str, str] | None = option(None)
+    strict: bool = option(False)

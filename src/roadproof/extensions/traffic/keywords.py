@@ -28,6 +28,7 @@ class MonitorKeywords(TracesKeywords, total=False):
     frames: tuple[int | None, int | None]
     strict: bool
     drivers: Iterable[str]
+    robust_signal: bool
 
 
 class EvaluateKeywords(SharingKeywords, TracesKeywords, total=False):

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
-from math import isfinite
 from pathlib import Path
 from typing import Any, TypeAlias, Unpack
 
@@ -22,9 +21,9 @@ from roadproof.extensions.traffic.answers import monitor as monitor_data
 from roadproof.extensions.traffic.answers.monitor import MonitoredTraceData, OverrideData, Truth
 from roadproof.extensions.traffic.evaluate import on_trace as driven
 from roadproof.extensions.traffic.evaluate.decisions import Decision
+from roadproof.extensions.traffic.evaluate.margin_signal import RobustnessSignal
 from roadproof.extensions.traffic.evaluate.observed import (
     MonitorResult,
-    Spans,
     note_on_standing,
     observe_drive,
     observe_samples,
@@ -41,6 +40,7 @@ from roadproof.extensions.traffic.evaluate.one_trace import (
     sample_drive,
     with_causes,
 )
+from roadproof.extensions.traffic.evaluate.signal_data import ended, finite, signal_data
 from roadproof.extensions.traffic.formats.source import ReadDrive
 from roadproof.extensions.traffic.formats.sources import has_numbers
 from roadproof.extensions.traffic.formats.table import Frame, columns_of
@@ -109,6 +109,11 @@ class MonitorAnswer(Table):
         return self.observed.margin
 
     @property
+    def robust_signal(self) -> RobustnessSignal | None:
+        """The robustness over time, where the option ``robust_signal`` asked for it."""
+        return self.observed.signal
+
+    @property
     def exit_code(self) -> ExitCode:
         return _CODES[self.verdict]
 
@@ -132,15 +137,15 @@ class MonitorAnswer(Table):
             end=x.convention,
             verdict=x.verdict,
             under_the_other_end=x.other,
-            robustness=(_finite(x.margin[0]), _finite(x.margin[1])),
+            robustness=(finite(x.margin[0]), finite(x.margin[1])),
             decides=x.decides,
             seconds=x.seconds,
             dt=str(x.dt),
             parts=tuple(
                 monitor_data.FormulaPartData(
                     formula=strip.name,
-                    true=_ended(strip.true),
-                    undecided=_ended(strip.undecided),
+                    true=ended(strip.true),
+                    undecided=ended(strip.undecided),
                     exact=strip.exact,
                 )
                 for strip in x.strips
@@ -148,6 +153,7 @@ class MonitorAnswer(Table):
             notes=self.notes,
             left_out=self.left_out,
             drivers=tuple(map(driven.driver_verdict, self.decisions)),
+            robust_signal=None if x.signal is None else signal_data(x.signal),
             **vars(self.place),
         )
         return write(answer)
@@ -161,15 +167,6 @@ class MonitorAnswer(Table):
 
     def __repr__(self) -> str:
         return f"<Monitored: {self.verdict}>"
-
-
-def _finite(value: float) -> float | None:
-    return value if isfinite(value) else None
-
-
-def _ended(spans: Spans) -> monitor_data.Spans:
-    """Spans of which one that never ends has no end."""
-    return tuple((begin, _finite(end)) for begin, end in spans)
 
 
 def trace(columns: Columns, road: RoadLike = "main-2") -> OneTrace:
@@ -198,8 +195,9 @@ def monitor(
     name, or a vehicle, whose lane at the start it is. ``roles``: a vehicle by role, such as {"SV": "Ego"}; by
     default the vehicle of that name, for SV also the only one called ego, hero or the like, and the others in
     the order of the file where they are as many as roles are left. ``end``: what the end of a recorded trace
-    means. ``drivers``: driver models that are put in place of SV, from the start on; so are those whose
-    boundary the formula names. Raises ``InputError``, ``UsageError``, ``TextError``.
+    means. ``robust_signal``: give the robustness over time, too. ``drivers``: driver models that are put in
+    place of SV, from the start on; so are those whose boundary the formula names. Raises ``InputError``,
+    ``UsageError``, ``TextError``.
     """
     settings = MonitorSettings.of(options)
     if isinstance(on, str | Path) and str(on).endswith(".json"):
@@ -282,7 +280,7 @@ def _on_drive(
     drive = drive.cast({roles.role_of(name): name for name in drive.vehicles})
     lanes = _lanes(definitions, query, number, played, file.lanes, settings)
     formula = bind(query.formula, file.road, lanes, values)
-    observed = observe_drive(query.text, formula, drive, file.horizon, step)
+    observed = observe_drive(query.text, formula, drive, file.horizon, step, settings.robust_signal)
     place = _place(played, definitions, query, lanes, overruled)
     casts = driven.scenario_casts(definitions, query, number, tuple(settings.drivers))
     decisions = tuple(driven.decisions_on(replace(file, drive=drive), casts, definitions, values))
@@ -338,7 +336,7 @@ def _on_trace(
     lanes = _lanes(definitions, query, number, samples, known, settings)
     formula = bind(query.formula, samples.road, lanes, values)
     refuse_unmeasured(samples, formula)
-    observed = observe_samples(query.text, formula, samples.batch, settings.end)
+    observed = observe_samples(query.text, formula, samples.batch, settings.end, settings.robust_signal)
     place = _place(samples, definitions, query, lanes)
     casts = driven.scenario_casts(definitions, query, number, tuple(settings.drivers))
     decisions = tuple(driven.decisions_on(samples, casts, definitions, values))

@@ -71,6 +71,12 @@ class MonitorSettings(groups.DefinitionsSettings, groups.Traces):
         "else moving as there; for scenarios 1, 2, 4 and the like on other road sectors",
         read=items_of("names", ", such as careful,r157"),
     )
+    robust_signal: bool = option(
+        False,
+        "--robust-signal",
+        "give the robustness at each sample, with its least value; of a drive and a formula without F, G and "
+        "U, at every instant",
+    )
     picture: Path | None = output(
         None, "--picture FILE", "draw the truth over time into FILE (.png or .svg)", read=Path, keyword=False
     )

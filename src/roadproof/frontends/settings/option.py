@@ -3,6 +3,7 @@
 import argparse
 import dataclasses
 import inspect
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from functools import partial
@@ -116,7 +117,7 @@ class Settings:
             if name not in known or not known[name].keyword:
                 near = get_close_matches(name, [x for x in known if known[x].keyword], n=1)
                 hint = f"; did you mean {near[0]!r}?" if near else ""
-                function = stem_of(cls).lower()
+                function = function_of(cls)
                 raise TypeError(f"{function}() got an unexpected keyword argument {name!r}{hint}")
             if value is not getattr(cls, name):
                 known[name].check(name, value)
@@ -129,6 +130,11 @@ class Settings:
 def stem_of(settings: type[Settings]) -> str:
     """Return the name of a class without the ending ``Settings``: its function or group of options."""
     return settings.__name__.removesuffix("Settings")
+
+
+def function_of(settings: type[Settings]) -> str:
+    """Return the name of the function whose options a class has: ``online_monitor`` of OnlineMonitor."""
+    return re.sub("(?<=[a-z])(?=[A-Z])", "_", stem_of(settings)).lower()
 
 
 def extensible(command: str) -> Callable[[type[S]], type[S]]:

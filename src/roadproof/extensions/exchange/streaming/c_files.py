@@ -8,10 +8,9 @@ from textwrap import wrap
 from roadproof.errors import InputError
 from roadproof.extensions.exchange.streaming.evaluation import members_of
 from roadproof.extensions.exchange.streaming.functions import StreamMonitor, functions, heads, helpers_for
-from roadproof.extensions.exchange.streaming.plan import plan_of
+from roadproof.extensions.exchange.streaming.plan import plans_of
 from roadproof.extensions.exchange.streaming.sample import SampleField, Source, fields_of
 from roadproof.logic.formula import Formula
-from roadproof.semantics.sampled import compile
 
 FLAGS = "-std=c99 -O2 -ffp-contract=off"
 """Options of the compiler with which verdicts are those of the monitor."""
@@ -53,11 +52,9 @@ def compile_c(
     Parameters have values. Raises ``InputError`` for formulas that no monitor takes (``plan_of``,
     ``fields_of``) and for a state of more than ``most_bytes``.
     """
-    compiled = compile({identifier: formula for identifier, (_, formula) in formulas.items()})
-    names = {plain: f"{x.name}({', '.join(x.arguments)})" for x, plain in compiled.named.items()}
+    plans = plans_of({identifier: formula for identifier, (_, formula) in formulas.items()}, dt)
     monitors = tuple(
-        StreamMonitor(identifier, text, plan_of(compiled.plain[identifier], dt, names))
-        for identifier, (text, _) in formulas.items()
+        StreamMonitor(identifier, text, plans[identifier]) for identifier, (text, _) in formulas.items()
     )
     for monitor in monitors:
         if monitor.memory > most_bytes:

@@ -18,6 +18,7 @@ from typing import TypeAlias, assert_never
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.semantics.sampled.compiled import compile
 from roadproof.semantics.sampled.lattice import interval_steps
 
 MOST_OPERATORS = 6
@@ -182,20 +183,27 @@ def plan_of(formula: Formula, dt: Fraction, names: Mapping[Formula, str]) -> Pla
     if planner.variables > MOST_OPERATORS:
         raise InputError(
             f"{planner.variables} temporal operators of the formula have no upper bound, counted with each "
-            f"sign in which they occur; a monitor in C takes at most {MOST_OPERATORS}: give some of them a "
-            "bound, or compile the parts one by one"
+            f"sign in which they occur; a streaming monitor takes at most {MOST_OPERATORS}: give some of "
+            "them a bound, or compile the parts one by one"
         )
     nodes = planner.nodes
     if nodes[-1].delay > MOST_DELAY:
         raise InputError(
-            f"the formula looks {nodes[-1].delay} samples ahead at a step of {float(dt):g} s; a monitor in C "
-            f"looks ahead by at most {MOST_DELAY}: shorten the intervals or take a longer --dt"
+            f"the formula looks {nodes[-1].delay} samples ahead at a step of {float(dt):g} s; a streaming "
+            f"monitor looks ahead by at most {MOST_DELAY}: shorten the intervals or take a longer --dt"
         )
     strong = sum(1 << x.operation.variable for x in nodes if isinstance(x.operation, Forever) and x.opposite)
     history = _history_lengths(nodes)
     planned_nodes = tuple(replace(node, kept=history.get(k, 0)) for k, node in enumerate(nodes))
     definitions = {k: names[x] for (x, _, _), k in planner.known.items() if x in names}
     return Plan(formula, tuple(planner.leaves), planned_nodes, planner.variables, strong, definitions)
+
+
+def plans_of(formulas: Mapping[str, Formula], dt: Fraction) -> dict[str, Plan]:
+    """Return the plans of formulas by name, whose parameters have values. Raises as ``plan_of``."""
+    compiled = compile(formulas)
+    names = {plain: f"{x.name}({', '.join(x.arguments)})" for x, plain in compiled.named.items()}
+    return {name: plan_of(plain, dt, names) for name, plain in compiled.plain.items()}
 
 
 def operands(operation: Operation) -> tuple[Operand, ...]:

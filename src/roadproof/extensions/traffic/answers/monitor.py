@@ -70,6 +70,56 @@ class MonitoredTraceData:
 
 
 @dataclass(frozen=True, kw_only=True)
+class LeastMarginData:
+    """The least robustness over time, the first of several."""
+
+    value: float
+    time: Annotated[float, Rule(minimum=0), Doc("In s from the first sample on.")]
+    attained: Annotated[
+        bool, Doc("False: values come near it just before that time, at which the robustness jumps.")
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MarginPieceData:
+    """A piece of the robustness over time: a polynomial, up to where the next one begins."""
+
+    begin: Annotated[float, Rule(minimum=0), Doc("In s.")]
+    exact: Annotated[str, Doc("The same as decimals, with a bound where it is rounded.")]
+    coefficients: Annotated[
+        tuple[Rational, ...], Doc("Of the polynomial in s since 0, the lowest power first; none is 0.")
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobustnessSignalData:
+    """The robustness over time: that of the trace from each sample on."""
+
+    exact: Annotated[bool, Doc("Whether it is known at every instant: pieces say it, or it is infinite.")]
+    sampled: Annotated[
+        str, LEFT_OUT, Doc("Why the robustness on a drive is known at samples alone, on the grid of dt.")
+    ] = ""
+    times: Annotated[tuple[float, ...], Doc("Of the samples, in s from the first one on.")]
+    low: Annotated[
+        tuple[float | None, ...],
+        Doc("Lower bounds at the samples; null is infinite: above 0 where the verdict is true, else below."),
+    ]
+    high: Annotated[
+        tuple[float | None, ...],
+        Doc("Upper bounds; null is infinite: below 0 where the verdict is false, else above."),
+    ]
+    verdicts: Annotated[tuple[Truth, ...], Doc("At the samples.")]
+    least: Annotated[LeastMarginData | None, Doc("null where no finite value is known.")]
+    positive: Annotated[
+        Spans, Doc("When it is above 0: begin and end in s, ends included for samples; null is for ever.")
+    ]
+    negative: Annotated[Spans, Doc("When it is below 0: as above.")]
+    pieces: Annotated[
+        tuple[MarginPieceData, ...], LEFT_OUT, Doc("On a drive, where the robustness is exact and finite.")
+    ] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
 class ObservationData(BaseHeading):
     """The verdict, robustness and parts of a formula on one trace."""
 
@@ -115,4 +165,7 @@ class MonitorData(MonitoredTraceData, OnRoad, ObservationData):
         LEFT_OUT,
         Doc("What becomes of the trace from its start on where driver models drive SV."),
     ] = ()
+    robust_signal: Annotated[
+        RobustnessSignalData | None, LEFT_OUT, Doc("The robustness over time, with --robust-signal.")
+    ] = None
     schema: Literal["roadproof/monitor/2"] = SCHEMA

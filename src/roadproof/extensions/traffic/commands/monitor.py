@@ -33,6 +33,7 @@ examples:
   roadproof monitor 1 ego-and-target.xosc --roles SV=Ego,POV=Target --view dense
   roadproof monitor 1 highd/01_tracks.csv:12,15 --set ext --picture pair.png
   roadproof monitor 1 highd/01_tracks.csv:12,15 --drivers careful,r157
+  roadproof monitor 'rssViolation(SV,POV)' drives/scenario-04-base.json --robust-signal
   roadproof monitor 'F danger(SV,POV)' highd/01_tracks.csv:12,15 --frames 100-400 --end clip
 """
 OPTIONS = MonitorSettings

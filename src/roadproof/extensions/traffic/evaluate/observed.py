@@ -8,7 +8,12 @@ from typing import TypeAlias
 import numpy as np
 
 from roadproof.extensions.traffic.answers.monitor import Truth, View
-from roadproof.extensions.traffic.evaluate.robust import robustness
+from roadproof.extensions.traffic.evaluate.margin_signal import (
+    RobustnessSignal,
+    drive_signal,
+    recorded_signal,
+)
+from roadproof.extensions.traffic.evaluate.robust import clamped_to_verdict, robustness
 from roadproof.extensions.traffic.formats.recording import BACKWARDS, Bools
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Application, Formula, nesting
@@ -44,7 +49,8 @@ class TruthStrip:
 @dataclass(frozen=True)
 class MonitorResult:
     """An answer at the first sample (time 0). ``margin`` bounds the robustness; infinite where only
-    lanes decide. ``other`` is the answer under the other convention for the end of a trace."""
+    lanes decide. ``other`` is the answer under the other convention for the end of a trace. ``signal`` is the
+    robustness over time, where it was asked for."""
 
     formula: str
     view: View
@@ -55,6 +61,7 @@ class MonitorResult:
     strips: tuple[TruthStrip, ...]
     convention: Convention | None = None
     other: Truth | None = None
+    signal: RobustnessSignal | None = None
 
     @property
     def decides(self) -> bool:
@@ -65,7 +72,9 @@ class MonitorResult:
         return low > 0 or high < 0
 
 
-def observe_samples(text: str, formula: Formula, batch: Batch, convention: Convention) -> MonitorResult:
+def observe_samples(
+    text: str, formula: Formula, batch: Batch, convention: Convention, with_signal: bool = False
+) -> MonitorResult:
     """The monitor's answer on the one trace of ``batch``. Raises ``InputError``."""
     monitor = compile({_FORMULA: formula})
     other: Convention = "clip" if convention == "truncated" else "truncated"
@@ -74,7 +83,8 @@ def observe_samples(text: str, formula: Formula, batch: Batch, convention: Conve
     margins = monitor.measure(batch, convention, at="all", named=True)
     margin = margins.margins[_FORMULA]
     dt = float(batch.dt)
-    spans = _spans(monitor.evaluate(seen, convention, at="all").answers[_FORMULA], dt)
+    answer = monitor.evaluate(seen, convention, at="all").answers[_FORMULA]
+    spans = _spans(answer, dt)
     depths = _depths(formula)
     strips = (
         TruthStrip(name_of(part), *_spans(truth, dt), "", depths[part], _sampled(margins.named[part]))
@@ -91,11 +101,12 @@ def observe_samples(text: str, formula: Formula, batch: Batch, convention: Conve
         (TruthStrip(text, *spans, margins=_sampled(margin)), *strips),
         convention,
         _truth_of(monitor.evaluate(seen, other).answers[_FORMULA]),
+        recorded_signal(margin, answer, batch.dt) if with_signal else None,
     )
 
 
 def observe_drive(
-    text: str, formula: Formula, drive: Drive, horizon: Fraction, dt: Fraction
+    text: str, formula: Formula, drive: Drive, horizon: Fraction, dt: Fraction, with_signal: bool = False
 ) -> MonitorResult:
     """The exact judge's answer on a drive, in dense and unbounded time; the margin is on the grid of dt, and
     0 where its sign there is not that of the verdict.
@@ -110,7 +121,10 @@ def observe_drive(
     named = [(part, truth) for part, truth in judgement.named() if part != formula]
     strips += [replace(_exact_strip(name_of(part), truth), depth=depths[part]) for part, truth in named]
     verdict: Truth = "true" if judgement.holds else "false"
-    return MonitorResult(text, "dense", verdict, (margin, margin), float(horizon), dt, tuple(strips))
+    signal = drive_signal(judgement, drive, horizon, dt) if with_signal else None
+    return MonitorResult(
+        text, "dense", verdict, (margin, margin), float(horizon), dt, tuple(strips), signal=signal
+    )
 
 
 def note_on_standing(text: str, formula: Formula, batch: Batch, convention: Convention) -> tuple[str, ...]:
@@ -197,12 +211,3 @@ def _exact_strip(name: str, truth: TruthSet) -> TruthStrip:
 
 def _truth_of(answer: TruthArrays) -> Truth:
     return "true" if answer.true[0] else "false" if answer.false[0] else "undecided"
-
-
-def clamped_to_verdict(margin: float, holds: bool) -> float:
-    """Return a sampled margin, cut off at 0 where the judge contradicts its sign.
-
-    In dense time the margin of a true formula is not below 0, and that of a false one not above: samples miss
-    events between them, and the first instant that an open condition lacks.
-    """
-    return max(margin, 0.0) if holds else min(margin, 0.0)

@@ -181,3 +181,12 @@ def _least(left: Array, low: int, j: int, length: int) -> Array:
     for i in range(low, j):
         least = np.minimum(least, left[j - i : length - i])
     return least
+
+
+def clamped_to_verdict(margin: float, holds: bool) -> float:
+    """Return a sampled margin, cut off at 0 where the judge contradicts its sign.
+
+    In dense time the margin of a true formula is not below 0, and that of a false one not above: samples miss
+    events between them, and the first instant that an open condition lacks.
+    """
+    return max(margin, 0.0) if holds else min(margin, 0.0)
