@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import reduce
 from typing import TypeAlias, assert_never
 
+from roadproof.extensions.catalogue.change_text import change_text
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
@@ -269,12 +270,10 @@ def false_part_text(part: FalsePart, definitions: Mapping[str, Definition]) -> s
     need = text(as_syntax(f.Compare(comparison.left, op, comparison.right)))
     sides = f"left side {_number(part.left)} {unit}, right side {_number(part.right)} {unit}"
     needs = need if len(need) <= LONGEST else f"left side {op} right side of the comparison, {sides}"
-    side = _term_text(comparison.left) if isinstance(comparison.left, t.Signal) else "the left side"
-    return (
-        f"{_definition(part, definitions)} at {_number(part.at)} s ({values}): "
-        f"it needs {needs}; {'raise' if op in ('>', '>=') else 'lower'} {side} "
-        f"by {'more than' if op in ('<', '>') else 'at least'} {_number(part.lack)} {unit} there"
-    )
+    change = change_text(comparison, op, part.values)
+    if not change:
+        change = f"a side has to change by {_number(part.lack)} {unit}".rstrip()
+    return f"{_definition(part, definitions)} at {_number(part.at)} s ({values}): it needs {needs}; {change}"
 
 
 def _definition(part: FalsePart, definitions: Mapping[str, Definition]) -> str:

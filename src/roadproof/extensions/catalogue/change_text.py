@@ -1,0 +1,91 @@
+"""The change of one vehicle that would make a comparison true, in words that a person would use."""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from math import ceil, log10
+from typing import TypeAlias
+
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.terms import Term
+from roadproof.world.signals import SIGNALS, SignalName
+from roadproof.world.units import SI, UNITS
+
+Values: TypeAlias = Mapping[t.Signal | t.Size, Fraction]
+_WORDS: Mapping[SignalName, tuple[str, str]] = {
+    "s": ("further ahead", "further back"),
+    "d": ("further left", "further right"),
+    "v_lon": ("faster", "slower"),
+    "v_lat": ("faster to the left", "faster to the right"),
+    "a_lon": ("more acceleration", "less acceleration"),
+    "a_lat": ("more acceleration to the left", "more acceleration to the right"),
+}
+"""What a greater and a smaller value of a signal is called."""
+
+
+def change_text(comparison: f.Compare, op: f.Comparison, values: Values) -> str:
+    """Return which vehicle would have to be where, or how fast, for ``left op right`` to hold.
+
+    ``values`` (SI): those of the signals and sizes of the comparison, which is false. One signal is changed,
+    of a vehicle other than SV where there is one; "" where no signal moves a side by as much as itself.
+    """
+    leaves = (*t.leaves(comparison.left), *t.leaves(comparison.right))
+    if not all(isinstance(x, t.Number | t.Signal | t.Size) for x in leaves):
+        return ""
+    lack = _difference(comparison, values)
+    for signal in sorted(_signals(values), key=lambda x: (x.vehicle == "SV", x.vehicle, x.name)):
+        slope = _difference(comparison, {**values, signal: values[signal] + 1}) - lack
+        if abs(slope) != 1 or signal.name not in _WORDS:
+            continue
+        wanted = -lack / slope
+        if _difference(comparison, {**values, signal: values[signal] + wanted}) != 0:
+            continue  # the slope changes on the way
+        rises = wanted > 0 if wanted else (op in (">", ">=")) == (slope > 0)
+        unit = SI[UNITS[SIGNALS[signal.name].unit][1]]
+        amount = f"at least {_rounded(abs(wanted))} {unit}" if wanted else "a little"
+        more, less = _WORDS[signal.name]
+        verb = "need" if signal.name in ("a_lon", "a_lat") else "have to be"
+        return f"{signal.vehicle} would {verb} {amount} {more if rises else less} then"
+    return ""
+
+
+def _signals(values: Values) -> list[t.Signal]:
+    return [x for x in values if isinstance(x, t.Signal)]
+
+
+def _difference(comparison: f.Compare, values: Values) -> Fraction:
+    return _value(comparison.left, values) - _value(comparison.right, values)
+
+
+def _value(term: Term, values: Values) -> Fraction:
+    """Return the value of a term whose parameters are numbers; an inverse has none that counts here."""
+    parts = [_value(x, values) for x in t.children(term)]
+    match term:
+        case t.Number(value, _):
+            return value
+        case t.Signal() | t.Size():
+            return values[term]
+        case t.Sum():
+            return sum(parts, Fraction(0))
+        case t.Product():
+            product = Fraction(1)
+            for x in parts:
+                product *= x
+            return product
+        case t.Power(_, exponent):
+            return Fraction(parts[0] ** exponent)
+        case t.Quotient():
+            return parts[0] / parts[1]
+        case t.Maximum():
+            return max(parts)
+        case t.Minimum():
+            return min(parts)
+        case t.Inverse() | t.Parameter() | t.Variable() | t.CustomSignal():
+            raise AssertionError("leaves are numbers, signals and sizes; inverses are never to blame")
+
+
+def _rounded(amount: Fraction) -> str:
+    """Return an amount rounded up to three digits."""
+    digits = 2 - (ceil(log10(float(amount))) - 1)
+    step = Fraction(10) ** -digits
+    return f"{float(ceil(amount / step) * step):.6g}"
