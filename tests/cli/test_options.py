@@ -263,6 +263,10 @@ def flags_in(text: str) -> set[str]:
     return set(re.findall(r"^  (?:-\w(?: [A-Z]+)?, )?(--[a-z-]+)", text, re.MULTILINE))
 
 
+MOST_USUAL = 12
+"""The options that --help shows of a command, besides those for help."""
+
+
 def flags_of(name: str, rare: bool) -> set[str]:
     actions: list[argparse.Action] = command_parser(name)._actions
     return {x.option_strings[-1] for x in actions if x.option_strings and is_rare(x) <= rare}
@@ -273,6 +277,7 @@ def test_usual_options_are_shown_and_all_on_request(name: str, capsys: pytest.Ca
     usual, every = printed(capsys, name, "--help"), printed(capsys, name, "--help-all")
     assert flags_in(usual) == flags_of(name, rare=False)
     assert flags_in(every) == flags_of(name, rare=True)
+    assert len(flags_of(name, rare=False) - {"--help", "--help-all"}) <= MOST_USUAL
     hidden = len(flags_of(name, True)) - len(flags_of(name, False))
     last = usual.splitlines()[-1]
     assert (last == f"{hidden} more option{'s' * (hidden > 1)}: roadproof {name} --help-all") == (hidden > 0)

@@ -27,7 +27,7 @@ def driver_models_or_none(text: str) -> tuple[str, ...]:
 def fixed_or_any(flag: str, what: str) -> Any:
     """A choice between ``what`` a test fixes, and any."""
     text = f"look at all {what}, not only at those that a test fixes"
-    return option("fixed", flag, text, choices=("fixed", "any"))
+    return option("fixed", flag, text, choices=("fixed", "any"), rare=True)
 
 
 def with_complete(flag: str, what: str, **more: Any) -> Any:
@@ -41,10 +41,13 @@ class Catalogue(groups.SeveralSets, groups.Models, groups.BudgetSettings, groups
     """Options of ``catalogue``."""
 
     among: Among = groups.scenarios_such_as("1-8", keyword=True)
-    classes: bool = option(True, "--no-classes", "ask about scenarios only")
+    classes: bool = option(True, "--no-classes", "ask about scenarios only", rare=True)
     gaps: bool = option(False, "--gaps", "also ask for a test of each class of gaps that is not proved empty")
     explore: bool = option(
-        False, "--explore", "also ask how drives of each class can begin, and which part no test covers"
+        False,
+        "--explore",
+        "also ask how drives of each class can begin, and which part no test covers",
+        rare=True,
     )
     roles: FixedOrAny = fixed_or_any("--roles", "choices of roles")
     lanes: FixedOrAny = fixed_or_any("--lanes", "lanes")
@@ -74,11 +77,17 @@ class Catalogue(groups.SeveralSets, groups.Models, groups.BudgetSettings, groups
         keyword=False,
     )
     objective: Objective | None = with_complete(
-        "--objective", "what the drives should be like (default: smooth)", choices=groups.OBJECTIVES
+        "--objective",
+        "what the drives should be like (default: smooth)",
+        choices=groups.OBJECTIVES,
+        rare=True,
     )
     spread: int | None = with_complete(
-        "--spread K", "write drives far from the tests until each class has K tests", read=whole(1)
+        "--spread K", "write drives far from the tests until each class has K tests", read=whole(1), rare=True
     )
     formats: Sequence[str] | None = with_complete(
-        "--format FORMAT", "also write openscenario, commonroad, highd, csv or opendrive", gather=list
+        "--format FORMAT",
+        "also write openscenario, commonroad, highd, csv or opendrive",
+        gather=list,
+        rare=True,
     )

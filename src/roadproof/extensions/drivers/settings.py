@@ -60,7 +60,7 @@ class Preventable(groups.DefinitionsSettings, groups.BudgetSettings, groups.Shar
         None, "--across NAME=LOW:HIGH", "range of the value across the lines"
     )
     lines: int = option(100, "--lines K", "lines of a plate (default: 100)", read=whole(2))
-    lemmas: bool = option(True, "--no-lemmas", "prove no lemmas")
+    lemmas: bool = option(True, "--no-lemmas", "prove no lemmas", rare=True)
     kernel: Kernel | None = option(
         None,
         "--kernel",

@@ -65,9 +65,15 @@ class Compile(groups.Values, groups.SearchPlace):
     )
     drives: Drives = drives_to_encode()
     memory: int = option(
-        65_536, "--memory N", "bytes that the state of a monitor may take (default: 65536)", read=whole(1)
+        65_536,
+        "--memory N",
+        "bytes that the state of a monitor may take (default: 65536)",
+        read=whole(1),
+        rare=True,
     )
-    name: str = option("monitor", "--name NAME", "name of the files and of types (default: monitor)")
+    name: str = option(
+        "monitor", "--name NAME", "name of the files and of types (default: monitor)", rare=True
+    )
     out: str | Path | None = groups.folder_for("the files", command_line_only=True, required=True)
 
 

@@ -93,15 +93,17 @@ class Explore(groups.DriveSearch):
         gather=list,
     )
     steps: int | None = option(
-        None, "--steps K", "number of values (default: 11; 6 for each of two)", read=whole(2)
+        None, "--steps K", "number of values (default: 11; 6 for each of two)", read=whole(2), rare=True
     )
     least: Term | None = option(None, "--least TERM", "find the least value of a term", read=text_or_none)
     greatest: Term | None = option(
         None, "--greatest TERM", "find the greatest value of a term", read=text_or_none
     )
-    when: What | None = option(None, "--when FORMULA", "measure the term when FORMULA holds, not at time 0")
+    when: What | None = option(
+        None, "--when FORMULA", "measure the term when FORMULA holds, not at time 0", rare=True
+    )
     precision: Number | None = option(
-        None, "--precision P", "width of a bracket in SI units (default: range/60; 0.1 for a term)"
+        None, "--precision P", "width of a bracket in SI units (default: range/60; 0.1 for a term)", rare=True
     )
     effort: float = groups.effort_for("a question", 6.0)
     out: str | Path | None = groups.folder_for("drives, certificates, JSON, pictures")

@@ -45,6 +45,7 @@ class MonitorSettings(groups.DefinitionsSettings, groups.Traces):
         "vehicle of each role, such as SV=Ego,POV=Target (default: the one called as the role; for SV also "
         "ego, hero and the like; the others in the order of the file)",
         read=mapping_of("SV=Ego,POV=Target"),
+        rare=True,
     )
     road: RoadLike | None = option(
         None,
@@ -52,16 +53,25 @@ class MonitorSettings(groups.DefinitionsSettings, groups.Traces):
         "road of samples (default: NAME_road.toml beside the file, else main-2); for inD and OSI: of a map",
     )
     view: View | None = option(
-        None, "--view", "judge in dense time (default: drives), or as samples", choices=("dense", "recorded")
+        None,
+        "--view",
+        "judge in dense time (default: drives), or as samples",
+        choices=("dense", "recorded"),
+        rare=True,
     )
     dt: Number = option(
-        Fraction(1, 25), "--dt S", "seconds between samples of a drive (default: 1/25)", read=seconds
+        Fraction(1, 25),
+        "--dt S",
+        "seconds between samples of a drive (default: 1/25)",
+        read=seconds,
+        rare=True,
     )
     frames: tuple[int | None, int | None] = option(
         (None, None),
         "--frames A-B",
         "frames of a recording (default: all that the vehicles share)",
         read=frame_range,
+        rare=True,
     )
     strict: bool = groups.strict_reading()
     drivers: Iterable[str] = option(
@@ -101,9 +111,14 @@ class Evaluate(groups.DefinitionsSettings, groups.Sharing, groups.Traces):
         "value of minSafe in seconds (default: 0.6)",
         read=seconds_or_zero,
         keyword=False,
+        rare=True,
     )
     classes: Iterable[str] = option(
-        ("Car",), "--class C", "vehicle class to evaluate; may be repeated (default: Car)", gather=tuple
+        ("Car",),
+        "--class C",
+        "vehicle class to evaluate; may be repeated (default: Car)",
+        gather=tuple,
+        rare=True,
     )
     drivers: Iterable[str] = option(
         (),
@@ -114,12 +129,16 @@ class Evaluate(groups.DefinitionsSettings, groups.Sharing, groups.Traces):
     )
     detectors: bool = option(True, "--no-detectors", "leave out the detectors of earlier works", rare=True)
     check: bool = option(False, "--check", "compare with the plain recursive evaluator (slow)", rare=True)
-    keep_going: bool = option(False, "--keep-going", "skip recordings that cannot be used")
+    keep_going: bool = option(False, "--keep-going", "skip recordings that cannot be used", rare=True)
     strict: bool = groups.strict_reading()
     road: str | None = groups.map_road()
     out: str | Path | None = groups.folder_for("results", command_line_only=True)
     list_roads: bool = output(
-        False, "--list", "only list lanes and zones, and which of them were inferred", keyword=False
+        False,
+        "--list",
+        "only list lanes and zones, and which of them were inferred",
+        keyword=False,
+        rare=True,
     )
     pictures: bool = groups.pictures_of("figures, which need matplotlib")
     tell: Say | None = option(None)
@@ -135,8 +154,12 @@ class Simulate(groups.Workers):
     seed: int = option(1, "--seed K", "seed from 0 to 2^64 - 1 (default: 1)", read=whole(0, LARGEST_SEED))
     lanes: int = option(3, "--lanes N", "lanes each way (default: 3)", read=whole(1))
     flow: float = option(3350.0, "--flow F", "vehicles per hour each way (default: 3350)", read=decimal)
-    truck_share: float = option(0.18, "--truck-share P", "share of trucks (default: 0.18)", read=float)
-    section: float = option(420.0, "--section M", "length of the road in metres (default: 420)", read=decimal)
+    truck_share: float = option(
+        0.18, "--truck-share P", "share of trucks (default: 0.18)", read=float, rare=True
+    )
+    section: float = option(
+        420.0, "--section M", "length of the road in metres (default: 420)", read=decimal, rare=True
+    )
     ramp: Ramp = option(
         "none",
         "--ramp",
@@ -145,7 +168,7 @@ class Simulate(groups.Workers):
         checked=False,
     )
     ramp_flow: float = option(
-        400.0, "--ramp-flow F", "vehicles per hour on the ramp (default: 400)", read=decimal
+        400.0, "--ramp-flow F", "vehicles per hour on the ramp (default: 400)", read=decimal, rare=True
     )
     plant: Iterable[JudgedDrive | DriveFile] = option(
         (),

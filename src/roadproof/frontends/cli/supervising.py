@@ -92,7 +92,7 @@ def _listen(read_end: int) -> None:
     """Hear how far the command is until it ends; say it now and then, unless a terminal shows it."""
     start = last = time.monotonic()
     shown = sys.stderr is None or sys.stderr.isatty() or bool(os.environ.get(progress.QUIET))
-    word, rest = "still working", b""
+    word, rest = f"{' '.join(sys.argv[1:2]) or 'the command'} is running, and has not said how far it is", b""
     while True:
         ready, _, _ = select.select([read_end], [], [], max(0.0, last + BEAT - time.monotonic()))
         if ready:

@@ -163,6 +163,7 @@ class Models(Settings):
         "vehicle model, or .toml file (default: car)",
         read=named(""),
         gather=dict,
+        rare=True,
     )
 
 
@@ -177,6 +178,7 @@ class SearchPlace(Models):
         "lane that L means (default: any, from the right)",
         read=named("L"),
         gather=dict,
+        rare=True,
     )
     horizon: Number = search(Fraction(6), "--horizon S", "seconds to search (default: 6)", read=seconds)
     dt: Number | None = search(
@@ -242,9 +244,14 @@ class Workers(Settings):
     """The number of processes, and whether they report progress."""
 
     jobs: Jobs = option(
-        None, "--jobs N", "number of processes (default: one per core)", group="work", read=whole(1)
+        None,
+        "--jobs N",
+        "number of processes (default: one per core)",
+        group="work",
+        read=whole(1),
+        rare=True,
     )
-    quiet: bool = output(False, "--quiet", "suppress progress output", keyword=False)
+    quiet: bool = output(False, "--quiet", "suppress progress output", keyword=False, rare=True)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -42,6 +42,7 @@ class Witness(groups.DriveSearch):
         "--objective KIND",
         "any, smooth (default), margin, mild, severe or short",
         choices=groups.OBJECTIVES,
+        rare=True,
     )
     count: int = option(
         1, "--count K", "find K clearly different drives (default: 1)", read=whole(1), least=1
@@ -50,7 +51,7 @@ class Witness(groups.DriveSearch):
     out: str | Path | None = groups.folder_for("drive files, CSV and pictures")
     pictures: bool = groups.pictures_of()
     animate: str | Iterable[str] = output(
-        (), "--animate FORMAT", "with --out: write animations: svg, gif or mp4", gather=list
+        (), "--animate FORMAT", "with --out: write animations: svg, gif or mp4", gather=list, rare=True
     )
 
 
@@ -70,10 +71,10 @@ class Prove(groups.DefinitionsSettings, groups.Models, groups.BudgetSettings, gr
 
     sets: tuple[str, ...] = groups.one_set()
     file: Path | None = option(
-        None, "--claims FILE", "read claims from a file, one a paragraph", read=Path, keyword=False
+        None, "--claims FILE", "read claims from a file, one a paragraph", read=Path, keyword=False, rare=True
     )
     declared: bool = option(
-        False, "--declared", "use the declared values of all other parameters, not all values"
+        False, "--declared", "use the declared values of all other parameters, not all values", rare=True
     )
     expect: Expected = option(
         "PROVED",
@@ -91,6 +92,7 @@ class Prove(groups.DefinitionsSettings, groups.Models, groups.BudgetSettings, gr
         "with --assume motion, smt or milp: limits of a model, for all vehicles or for NAME",
         read=named(""),
         gather=dict,
+        rare=True,
     )
     engine: ProofEngine = search(
         "dense",
@@ -100,7 +102,7 @@ class Prove(groups.DefinitionsSettings, groups.Models, groups.BudgetSettings, gr
     )
     road: RoadLike | None = search(None, "--road R", "with smt, milp: reference road, .toml file or map")
     horizon: Number = search(
-        Fraction(6), "--horizon S", "with smt, milp: seconds to search (default: 6)", read=seconds
+        Fraction(6), "--horizon S", "with smt, milp: seconds to search (default: 6)", read=seconds, rare=True
     )
     dt: Number | None = search(
         None,

@@ -24,7 +24,11 @@ class Overlap(groups.SeveralSets, groups.Survey):
     roles: Same = groups.same_or_any("--roles", "vehicles have the same roles in both, or any")
     start: Same = groups.same_or_any("--start", "both start at time 0, or one at any later time")
     horizon: Number | None = search(
-        None, "--horizon S", "seconds to search (default: 6; 9 with --start any)", read=readers.seconds
+        None,
+        "--horizon S",
+        "seconds to search (default: 6; 9 with --start any)",
+        read=readers.seconds,
+        rare=True,
     )
     effort: float = groups.effort_for("a drive", 60.0)
     out: str | Path | None = groups.folder_for("evidence, CSV, JSON and heat map")
