@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
-from roadproof.extension import AUDIENCES, InstalledExtension, extension_error, installed_extensions
+from roadproof.extension import AUDIENCES, Audience, InstalledExtension, extension_error, installed_extensions
 
 _ORDER = ("list", "show", "prove", "witness", "compare", "overlap", "order", "check")
 _HEAD = "Compiles driving scenarios to proofs, witnesses and monitors."
@@ -60,6 +60,12 @@ def _summary(file: str) -> str:
 
 
 COMMANDS = _find_commands()
+DOORS: Mapping[Audience, str] = {
+    "testers": "I test vehicles",
+    "safety cases": "I sign a safety case",
+    "researchers": "I work on logics",
+}
+"""The words by which a reader finds the commands of an audience, as in the README."""
 
 
 def groups() -> Mapping[str, list[str]]:
@@ -67,7 +73,7 @@ def groups() -> Mapping[str, list[str]]:
     by_title: dict[str, list[str]] = {"core": [name for name, x in COMMANDS.items() if x.extension is None]}
     for audience in AUDIENCES:
         mine = {name: x.extension for name, x in COMMANDS.items() if x.extension is not None}
-        by_title[f"for {audience}"] = [name for name, x in mine.items() if x.record.audience == audience]
+        by_title[DOORS[audience]] = [name for name, x in mine.items() if x.record.audience == audience]
     return {title: names for title, names in by_title.items() if names}
 
 
