@@ -24,7 +24,8 @@ def run(args: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from roadproof.frontends.api.ordering import order
 
+    definitions, keywords = read_definitions(args, OPTIONS), study_keywords(args, OPTIONS)
     if args.among is None:  # it takes minutes, known answers too, whose drives are judged again
         note("expanding all scenarios into families, then looking up known answers of each family")
-    orders = order(args.among, read_definitions(args, OPTIONS), **study_keywords(args, OPTIONS))
+    orders = order(args.among, definitions, **keywords)
     return deliver(args, orders, args.pictures)
