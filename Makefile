@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
 
-.PHONY: test long alone demo docs man fresh browser evidence evidence-check generated findings interop release mutants fuzz lint unit format clean
+.PHONY: test long alone demo docs man fresh browser evidence evidence-check generated findings interop solvers release mutants fuzz lint unit format clean
 
 test: lint unit
 
@@ -81,6 +81,11 @@ findings: $(READY)
 # Exported drives, put to clients that nobody here wrote (docs/how-to/interop.md); environments under out/interop.
 interop: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m extensions.exchange.interop $(ARGS)
+
+# Searches of all scenarios as files, put to the solvers that are installed; ARGS='--solver z3 --every 3' asks less. It
+# keeps tests/extensions/encoding/runs.csv; then make generated counts docs/data/solvers.csv.
+solvers: $(READY)
+	PYTHONPATH=tests nice $(BIN)/python -m extensions.encoding.solver_runs $(ARGS)
 
 # The wheel and the source archive in out/release, installed into every Python that is found; ARGS=--lowest too.
 release: $(READY)

@@ -15,6 +15,7 @@ from typing import NamedTuple, TypeAlias
 
 import tally
 from documents import drawings, keywords_file, reference, rooms, schemas, stub, trusted
+from extensions.encoding import solver_runs
 from extensions.kernel import extract
 
 ROOT = Path(__file__).parents[2]
@@ -62,6 +63,10 @@ def _tables_of_tests() -> Contents:
     }
 
 
+def _solvers() -> Contents:
+    return {solver_runs.TABLE: tally.text(solver_runs.table(solver_runs.read_runs())).encode()}
+
+
 def _requirements() -> Contents:
     script = ROOT / "examples/assurance/make_requirements.py"
     tables: Iterable[str] = runpy.run_path(str(script))["tables"]()
@@ -88,6 +93,7 @@ GENERATORS = (
     Generator("the page of exit codes", _exit_codes),
     Generator("drawings", _drawings),
     Generator("tables about the tests", _tables_of_tests),
+    Generator("the table of solvers", _solvers),
     Generator("requirements of an example", _requirements),
     Generator("the table of folders", _rooms),
     Generator("the tables of the code to trust", _trusted),

@@ -3,8 +3,6 @@
 import csv
 import io
 import re
-import subprocess
-import sys
 import tempfile
 from dataclasses import replace
 from fractions import Fraction
@@ -15,17 +13,15 @@ import numpy as np
 import pytest
 
 import roadproof as rp
-from extensions.encoding.outside import MIXED, SMT, is_installed
 from roadproof.engines.encode.problem import LimitKind
 from roadproof.engines.solve.highs import MixedIntegerProgram, model_text
-from roadproof.engines.solve.milp import column_box, solve_mixed
 from roadproof.errors import InputError, UsageError
 from roadproof.extensions.encoding import judging
 from roadproof.extensions.encoding.encode import Encoding
 from roadproof.extensions.encoding.judging import NoWitnessError, columns_of, judged
 from roadproof.extensions.encoding.naming import WHOLE, Naming, QuestionPart
 from roadproof.extensions.encoding.row_table import CONDITIONS
-from roadproof.extensions.encoding.solutions import parse_solution, read_solution
+from roadproof.extensions.encoding.solutions import parse_solution
 from roadproof.frontends.cli.main import main
 
 BASE, EXT = rp.load("base"), rp.load("ext")
@@ -122,93 +118,6 @@ def test_the_table_says_where_each_row_is_written(tmp_path: Path) -> None:
             assert x["within"].split(" / ")[-1] == x["part"]
         else:
             assert x["condition"] in CONDITIONS.values() or x["row"].startswith("choose.")
-
-
-# --- Other solvers ---------------------------------------------------------------------------------
-
-
-def solved_elsewhere(tmp_path: Path, encoding: Encoding, name: str) -> str:
-    """The status of a solver, after its solution, if it has one, is judged."""
-    mixed = name in MIXED
-    model, solution = tmp_path / f"model.{'mps' if mixed else 'smt2'}", tmp_path / "solution"
-    solution.unlink(missing_ok=True)
-    model.write_text(encoding.text("mps" if mixed else "smt2"))
-    status = (MIXED | SMT)[name](model, solution)
-    if status == "solved" and encoding.posed.drives != "outer":
-        values = columns_of(Naming(encoding.posed), read_solution(solution))
-        judged(encoding.posed, values, name)
-    return status
-
-
-def solved_here(encoding: Encoding) -> str:
-    """The status of the search's own solver."""
-    posed = encoding.posed
-    side, pieces = ("outer", 2) if posed.drives == "outer" else ("inner", 1)
-    status = solve_mixed(posed.problem, column_box(posed.problem), side, pieces).status
-    return {"found": "solved", "infeasible": "infeasible", "unknown": "open"}[status]
-
-
-NEVER = "F (v_lon(SV) > 30 m/s and F[0, 1] v_lon(SV) < 20 m/s)"
-"""No car brakes so hard."""
-
-
-@pytest.mark.parametrize("name", [*MIXED])
-@pytest.mark.parametrize("formula", ["scenario_4(SV, POV, L)", NEVER])
-def test_another_solver_says_the_same(tmp_path: Path, name: str, formula: str) -> None:
-    if not is_installed(name):
-        pytest.skip(f"{name} is not installed")
-    kinds = ("natural", "outer") if formula == NEVER else ("natural",)
-    for drives in kinds:
-        lanes = {} if formula == NEVER else LANE
-        encoding = rp.encode(formula, lanes=lanes, drives=drives)
-        assert solved_elsewhere(tmp_path, encoding, name) == solved_here(encoding)
-    assert solved_here(encoding) == ("infeasible" if formula == NEVER else "solved")
-
-
-@pytest.mark.parametrize("number", range(1, 25))
-@pytest.mark.parametrize("home", [BASE, EXT], ids=["base", "ext"])
-def test_all_scenarios_are_solved_elsewhere(tmp_path: Path, home: rp.Definitions, number: int) -> None:
-    named_everywhere(rp.encode(number, using=home))
-    for name in MIXED:
-        if is_installed(name):
-            assert is_witnessed(tmp_path, home, number, name)
-
-
-def is_witnessed(tmp_path: Path, home: rp.Definitions, number: int, name: str) -> bool:
-    """Whether a solver finds a witness in any lanes, on finer grids where one is none between samples."""
-    for lanes in lanes_of(rp.encode(number, using=home)):
-        for dt in (None, "0.3", "0.15"):
-            encoding = rp.encode(number, using=home, lanes=lanes, dt=dt)
-            try:
-                status = solved_elsewhere(tmp_path, encoding, name)
-            except NoWitnessError:
-                continue
-            assert "open" in (status, here := solved_here(encoding)) or status == here
-            if status == "solved":
-                return True
-            break
-    return False
-
-
-def lanes_of(encoding: Encoding) -> list[dict[str, str]]:
-    """All assignments of lanes of a question."""
-    return [dict(x.lanes) for x in (encoding.posed, *encoding.others)]
-
-
-def test_an_smt_solver_finds_a_drive_and_names_what_conflicts(tmp_path: Path) -> None:
-    encoding = rp.encode("F v_lon(SV) > 30 m/s", horizon=2)
-    assert solved_elsewhere(tmp_path, encoding, "z3") == "solved"
-    never = rp.encode(NEVER, drives="all", horizon=3)
-    script = tmp_path / "core.smt2"
-    script.write_text(never.text("smt2") + "(get-unsat-core)\n")
-    told = subprocess.run(
-        [Path(sys.executable).with_name("z3"), script], capture_output=True, text=True
-    ).stdout
-    status, core = told.split(maxsplit=1)
-    assert status == "unsat"
-    named = {x.partition("@")[0] for x in core.strip(" ()\n").split()}
-    assert {"acceleration.SV", "formula"} <= named
-    assert named <= {"acceleration.SV", "formula", "motion.SV", "lateral_share.SV", "bounds.SV.v_lon"}
 
 
 # --- Solutions that are none ------------------------------------------------------------------------
@@ -385,17 +294,6 @@ def test_formulas_that_no_row_bounds_are_refused() -> None:
     with pytest.raises(UsageError, match="degree above 2, which no linear row bounds: write it as smt2"):
         rp.encode(cubic, drives="outer").text("mps")
     assert "(check-sat)" in rp.encode(cubic, drives="outer").text("smt2")
-
-
-def test_a_model_of_a_formula_of_degree_three_is_read_back(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    cubic = "F v_lon(SV)^3 > 30 m/s * v_lon(SV)^2"
-    encoding = rp.encode(cubic, horizon=1)
-    assert solved_elsewhere(tmp_path, encoding, "z3") == "solved"
-    line = ["witness", cubic, "--horizon", "1", "--no-pictures", "--jobs", "1"]
-    assert main([*line, "--solution", str(tmp_path / "solution")]) == 0
-    assert "WITNESSED" in capsys.readouterr().out
 
 
 def test_a_drive_to_which_a_modifier_objects_is_refused(
