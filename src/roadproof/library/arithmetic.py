@@ -5,8 +5,15 @@ from fractions import Fraction
 from typing import Literal, TypeAlias, assert_never
 
 from roadproof.errors import Position, TextError
-from roadproof.library.quantity import SECONDS, Quantity, product_dimension, same_dimension, unit_name
-from roadproof.library.scopes import DURATION, dimension_of
+from roadproof.library.quantity import (
+    DURATION,
+    SECONDS,
+    Quantity,
+    dimension_of,
+    product_dimension,
+    same_dimension,
+    unit_name,
+)
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import custom_signal, signal_is_true

@@ -18,7 +18,7 @@ from roadproof.library.elaborate import claim_errors_in
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.loading import gather, gather_files, load_library, place_of, sources_of
 from roadproof.library.notes import ElaborationCache, UnreadableNameError
-from roadproof.library.quantity import Quantity
+from roadproof.library.quantity import Quantity, dimension_of
 from roadproof.library.scopes import Value, Vehicles
 from roadproof.library.specification import Library, Source, Specification, source_of
 from roadproof.logic import syntax
@@ -223,7 +223,7 @@ def _errors_with(walk: Elaborator, definition: Definition, size: int) -> list[Te
         if binding.sort in scopes.SORTS:
             scope[binding.name] = Vehicles(names) if binding.sort == "vehicles" else scopes.value_of(binding)
         else:
-            dimension = scopes.dimension_of(binding.sort)
+            dimension = dimension_of(binding.sort)
             scope[binding.name] = Quantity(t.number(1, dimension), dimension)
     errors: list[TextError] = []
     inner = replace(walk.for_next_claim(), errors=errors, lost=walk.lost)

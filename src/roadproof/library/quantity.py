@@ -15,9 +15,16 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.terms import Term
 from roadproof.runtime.records import dataclass
-from roadproof.world.units import SI, Dimension
+from roadproof.world.units import SI, UNITS, Dimension
 
 SECONDS: Dimension = (0, 1)
+DURATION = "duration"
+"""The sort of times that are never negative; only definitions have such arguments."""
+
+
+def dimension_of(sort: str) -> Dimension:
+    """Return the dimension of a number that is declared with a unit, or as a duration."""
+    return UNITS["s" if sort == DURATION else sort][1]
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import TypeAlias, get_args
 
 from roadproof.errors import Position, TextError
-from roadproof.library.quantity import Quantity
+from roadproof.library.quantity import DURATION, Quantity, dimension_of
 from roadproof.library.specification import unknown_name
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
@@ -16,8 +16,6 @@ from roadproof.world.road import Zone
 from roadproof.world.units import UNITS
 
 SORTS = ("vehicle", "vehicles", "lane", "lanelet")
-DURATION = "duration"
-"""The sort of times that are never negative; only definitions have such arguments."""
 _FREE = {"vehicle": re.compile(r"SV|POV[0-9]?"), "lane": re.compile(r"L[0-9]?")}  # library.ROLE
 
 
@@ -50,11 +48,6 @@ Free: TypeAlias = Mapping[str, set[str]]
 def check_sort(binding: Binding) -> None:
     if binding.sort not in SORTS and binding.sort != DURATION and binding.sort not in UNITS:
         raise TextError(unknown_name("sort or unit", binding.sort, (*SORTS, DURATION, *UNITS)), binding.at)
-
-
-def dimension_of(sort: str) -> t.Dimension:
-    """Return the dimension of a number that is declared with a unit, or as a duration."""
-    return UNITS["s" if sort == DURATION else sort][1]
 
 
 def refuse_signal(name: str, signals: Collection[str], at: Position) -> None:

@@ -37,12 +37,12 @@ def change_text(comparison: f.Compare, op: f.Comparison, values: Values) -> str:
         slope = _difference(comparison, {**values, signal: values[signal] + 1}) - lack
         if abs(slope) != 1 or signal.name not in _WORDS:
             continue
-        wanted = -lack / slope
-        if _difference(comparison, {**values, signal: values[signal] + wanted}) != 0:
+        needed = -lack / slope
+        if _difference(comparison, {**values, signal: values[signal] + needed}) != 0:
             continue  # the slope changes on the way
-        rises = wanted > 0 if wanted else (op in (">", ">=")) == (slope > 0)
+        rises = needed > 0 if needed else (op in (">", ">=")) == (slope > 0)
         unit = SI[UNITS[SIGNALS[signal.name].unit][1]]
-        amount = f"at least {_rounded(abs(wanted))} {unit}" if wanted else "a little"
+        amount = f"at least {_rounded(abs(needed))} {unit}" if needed else "a little"
         more, less = _WORDS[signal.name]
         verb = "need" if signal.name in ("a_lon", "a_lat") else "have to be"
         return f"{signal.vehicle} would {verb} {amount} {more if rises else less} then"

@@ -18,9 +18,9 @@ from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.terminal import width_of_terminal
 from roadproof.frontends.settings.commands import Show
 from roadproof.library.elaborate import read_claim, signature
+from roadproof.library.quantity import DURATION
 from roadproof.library.scenario_references import number_by_name, numbers_by_name, refuse_unknown
 from roadproof.library.scenarios import name_of, number_in
-from roadproof.library.scopes import DURATION
 from roadproof.library.specification import Specification, unknown_name
 from roadproof.library.uses import parts_of_claim
 from roadproof.library.words import Words, words_of
