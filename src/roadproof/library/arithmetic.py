@@ -1,4 +1,4 @@
-"""Elaboration of arithmetic: comparisons, operations on terms, and bounds of intervals, with dimensions."""
+"""Elaboration of arithmetic and of temporal operators, with dimensions and the bounds of intervals."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -18,7 +18,13 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import custom_signal, signal_is_true
 from roadproof.logic.formula import Formula
-from roadproof.logic.syntax import Binding, Definition, ParameterDeclaration, SignalDeclaration
+from roadproof.logic.syntax import (
+    Binding,
+    Definition,
+    ParameterDeclaration,
+    SignalDeclaration,
+    TemporalOperator,
+)
 from roadproof.world.units import UNITS
 
 ComparisonOperator: TypeAlias = Literal["<", "<=", ">", ">=", "=", "!="]
@@ -221,3 +227,35 @@ def bound(quantity: Quantity, parameters: Parameters, at: Position) -> t.Term:
             "Use numbers and parameters declared with where … >= 0, added or multiplied.",
         )
     return quantity.term if value is None else t.Number(value, SECONDS)
+
+
+def temporal(op: TemporalOperator, left: Formula, interval: f.Interval, right: Formula) -> Formula:
+    """Return the formula of a temporal operator; ``left`` counts for those with two sides."""
+    match op:
+        case "U":
+            return f.Until(left, interval, right)
+        case "S":
+            return f.Since(left, interval, right)
+        case "W":
+            return f.weak_until(left, interval, right)
+        case "R":
+            return f.release(left, interval, right)
+        case "F":
+            return f.Eventually(interval, right)
+        case "G":
+            return f.Always(interval, right)
+        case "O":
+            return f.once(interval, right)
+        case "H":
+            return f.historically(interval, right)
+        case _:
+            assert_never(op)
+
+
+def edge(name: str, body: Formula, time: t.Term) -> Formula:
+    """Return ``rise(body, time)``: it holds, and did not at some instant of the last ``time``.
+
+    Any other ``name`` is ``fall``: the same of its negation.
+    """
+    now, before = (body, f.negation(body)) if name == "rise" else (f.negation(body), body)
+    return f.conjunction(now, f.once(f.Interval(f.ZERO, time), before))

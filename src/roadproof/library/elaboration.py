@@ -13,7 +13,6 @@ from typing import TypeVar, assert_never
 from roadproof.errors import Position, TextError
 from roadproof.library import arithmetic, mistakes, scopes
 from roadproof.library.notes import ElaborationCache, FormulaNote, UnreadableNameError, UsedDefinitions
-from roadproof.library.operators import edge, temporal
 from roadproof.library.quantity import Quantity, Sizes
 from roadproof.library.scopes import SORTS, Free, Ref, Scope, Value, Vehicles
 from roadproof.library.specification import BUILT_IN, Specification, source_of, unknown_name
@@ -290,7 +289,7 @@ class Elaborator:
                 goal = self.formula(right, scope)
                 first = f.TRUE if left is None else self.formula(left, scope)
                 self.at_start = is_at_start
-                return temporal(op, first, interval, goal)
+                return arithmetic.temporal(op, first, interval, goal)
             case syntax.Quantified():
                 return self._quantified(expression, scope)
 
@@ -387,7 +386,7 @@ class Elaborator:
         if name in ("rise", "fall"):
             mistakes.refuse_arity_of_edge(name, call)
             time = self._bound(call.arguments[1], scope)
-            return edge(name, self.formula(call.arguments[0], scope), time)
+            return arithmetic.edge(name, self.formula(call.arguments[0], scope), time)
         mistakes.refuse_arity(name, 2 if name == "occ" else 1, call)
         first = call.arguments[0]
         if name == "occ":
