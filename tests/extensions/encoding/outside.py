@@ -15,8 +15,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-Status: TypeAlias = Literal["solved", "infeasible", "open"]
-SECONDS = 600
+Status: TypeAlias = Literal["solved", "infeasible", "open", "clock"]
+"""The verdict of a solver: open where it reaches its limit, clock where the backstop ends it."""
+SECONDS, SMT_SECONDS = 600, 120
+"""The backstop for solvers of linear rows, and for those of SMT-LIB."""
+CLOCK = "ended by the clock"
 NODES = 10_000
 """How many nodes HiGHS, CBC and SCIP may branch on."""
 Z3_UNITS, CVC5_UNITS = 10_000_000, 100_000
@@ -36,12 +39,12 @@ class Solver:
     is_installed: Callable[[], bool]
 
 
-def _output(command: list[str], folder: Path | None = None) -> str:
-    """Return the standard output of a command, empty where the clock ends it."""
+def _output(command: list[str], folder: Path | None = None, seconds: int = SECONDS) -> str:
+    """Return the standard output of a command, or ``CLOCK`` where the clock ends it."""
     try:
-        return subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, cwd=folder).stdout
+        return subprocess.run(command, capture_output=True, text=True, timeout=seconds, cwd=folder).stdout
     except subprocess.TimeoutExpired:
-        return ""
+        return CLOCK
 
 
 def _number_in(text: str) -> str:
@@ -81,9 +84,9 @@ def _highs_version() -> str:
 
 
 def cbc(model: Path, solution: Path) -> Status:
-    _output(["cbc", str(model), "maxNodes", str(NODES), "solve", "solution", str(solution)])
+    told = _output(["cbc", str(model), "maxNodes", str(NODES), "solve", "solution", str(solution)])
     first = solution.read_text().partition("\n")[0] if solution.is_file() else ""
-    return _of(first, "Optimal", "nfeasible")
+    return _of(told if told == CLOCK else first, "Optimal", "nfeasible")
 
 
 SCIP = """
@@ -101,8 +104,9 @@ if model.getNSols():
 
 
 def scip(model: Path, solution: Path) -> Status:
-    told = _output([scip_python(), "-c", SCIP, str(model), str(solution), str(NODES)]).split()
-    return _of(told[-1] if told else "", "optimal", "infeasible")
+    told = _output([scip_python(), "-c", SCIP, str(model), str(solution), str(NODES)])
+    last = told.split()[-1] if told.split() else ""
+    return _of(told if told == CLOCK else last, "optimal", "infeasible")
 
 
 def _scip_version() -> str:
@@ -121,6 +125,8 @@ def _has_scip() -> bool:
 
 
 def _of(word: str, solved: str, infeasible: str) -> Status:
+    if word == CLOCK:
+        return "clock"
     return "solved" if solved in word else "infeasible" if infeasible in word else "open"
 
 
@@ -161,8 +167,10 @@ def cvc5_package(model: Path, solution: Path) -> Status:
 
 
 def _smt(command: list[str], solution: Path) -> Status:
-    told = _output(command)
+    told = _output(command, seconds=SMT_SECONDS)
     solution.write_text(told)
+    if told == CLOCK:
+        return "clock"
     status = told.split(maxsplit=1)[0] if told else ""
     return "solved" if status == "sat" else "infeasible" if status == "unsat" else "open"
 
@@ -207,7 +215,7 @@ _ALL = (
     ),
     Solver(
         "cvc5 package",
-        "cvc5, Python package,",
+        "cvc5 (Python package)",
         "smt2",
         f"rlimit={CVC5_UNITS}",
         cvc5_package,

@@ -147,8 +147,8 @@ def run(problem: Problem, solver: Solver, version: str) -> Run:
 
 
 def contradicts(one: str, other: str) -> bool:
-    """Whether two statuses are different verdicts; an open one is none."""
-    return "open" not in (one, other) and one != other
+    """Whether two statuses are different verdicts; one that a limit or the clock ended is none."""
+    return {one, other} == {"solved", "infeasible"}
 
 
 def read_runs(path: Path = RUNS) -> tuple[Run, ...]:
@@ -171,7 +171,12 @@ def write_runs(runs: Iterable[Run]) -> None:
 def table(runs: Sequence[Run]) -> Table:
     """Return the table of the page: a row for each solver."""
     head = ("solver", "file", "limit", "problems", "same verdict", "limit reached")
-    head += ("judged witnesses", "no witness between samples", "of these, one on a finer grid")
+    head += (
+        "ended by the clock",
+        "judged witnesses",
+        "no witness between samples",
+        "of these, one on a finer grid",
+    )
     body = []
     for solver in SOLVERS.values():
         of_it = [x for x in runs if x.solver == solver.name]
@@ -190,6 +195,7 @@ def _row(solver: Solver, runs: Sequence[Run]) -> tuple[object, ...]:
         len(runs),
         sum(x.verdict == x.expected for x in runs),
         sum(x.verdict == "open" for x in runs),
+        sum(x.verdict == "clock" for x in runs),
         sum(x.reading == "witness" for x in runs),
         sum(x.reading == "no witness" for x in runs),
         sum(bool(x.finer) for x in runs),

@@ -59,7 +59,7 @@ def test_another_solver_says_the_same(tmp_path: Path, name: str, formula: str) -
 def test_an_smt_solver_says_the_same(name: str) -> None:
     skip_without(name)
     assert run(Problem("base", 9, "merge-1", "infeasible"), SOLVERS[name], "").verdict == "infeasible"
-    if name == "z3":
+    if name == "z3":  # its drive may fail between samples
         assert run(Problem("base", 5, "main-1", "solved"), SOLVERS[name], "").verdict == "solved"
 
 
