@@ -13,17 +13,17 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from roadproof.frontends.report.drive import COLOURS, draw_drive
 
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.extensions.pages.animation import draw_animation
 from roadproof.extensions.pages.bent_scene import BentScene, scene_of
 from roadproof.extensions.pages.frames import draw_film
 from roadproof.extensions.pages.miniature import miniature, small_scene
+from roadproof.extensions.pages.plane import RoadView
 from roadproof.extensions.pages.scene import AnimationScene, PolygonShape, StrokesShape
 from roadproof.extensions.pages.viewer_data import viewer_data
 from roadproof.extensions.pages.viewer_page import viewer_modules
-from roadproof.frontends.report.drive import COLOURS, draw_drive
-from roadproof.frontends.report.plane import RoadView
 from roadproof.library.loading import bundled_library
 from roadproof.world.curves import Spiral
 from roadproof.world.drive import Drive, motion_of

@@ -10,22 +10,13 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from roadproof.frontends.report.drive import DANGER, SNAPSHOTS, draw_drive
 
 import roadproof as rp
 from extensions.pages.report.edges import cut_off
 from roadproof.evidence.drive_file import DriveFile, load_drive, read_drive
 from roadproof.evidence.judged import judge_file
-from roadproof.extensions.pages.moving import draw_moving
-from roadproof.extensions.pages.places import nearest, places_of
-from roadproof.extensions.pages.scene import AnimationScene
-from roadproof.extensions.pages.viewer_data import ShownFormula, viewer_data
-from roadproof.extensions.pages.viewer_page import json_in_html, viewer_modules, viewer_page, viewer_style
-from roadproof.extensions.pages.viewer_recorded import recorded_data
-from roadproof.extensions.traffic.evaluate.observed import observe_drive
-from roadproof.extensions.traffic.evaluate.one_trace import sample_drive
-from roadproof.extensions.traffic.report.one_trace import draw_strips
-from roadproof.frontends.report.drive import DANGER, SNAPSHOTS, draw_drive
-from roadproof.frontends.report.drive_data import (
+from roadproof.extensions.pages.drive_data import (
     Danger,
     Strip,
     danger_spans,
@@ -38,6 +29,15 @@ from roadproof.frontends.report.drive_data import (
     vehicles_of,
     window_of,
 )
+from roadproof.extensions.pages.moving import draw_moving
+from roadproof.extensions.pages.places import nearest, places_of
+from roadproof.extensions.pages.scene import AnimationScene
+from roadproof.extensions.pages.viewer_data import ShownFormula, viewer_data
+from roadproof.extensions.pages.viewer_page import json_in_html, viewer_modules, viewer_page, viewer_style
+from roadproof.extensions.pages.viewer_recorded import recorded_data
+from roadproof.extensions.traffic.evaluate.observed import observe_drive
+from roadproof.extensions.traffic.evaluate.one_trace import sample_drive
+from roadproof.extensions.traffic.report.one_trace import draw_strips
 from roadproof.frontends.report.figures import fix_layout
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
@@ -357,7 +357,7 @@ def test_a_drive_of_one_vehicle_speaks_of_no_distances() -> None:
 
 
 def test_danger_that_no_definition_speaks_of_has_no_row(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roadproof.frontends.report.drive_data.danger_spans", lambda *_: None)
+    monkeypatch.setattr("roadproof.extensions.pages.drive_data.danger_spans", lambda *_: None)
     shown = draw_moving(file_of(), LIBRARY).decode()
     assert "danger between" not in shown
     assert "danger begins" not in shown
