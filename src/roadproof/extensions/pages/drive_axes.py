@@ -57,10 +57,11 @@ class TimeAxis:
         """Return the ticks of time below ``y``."""
         shapes = list[Shape]()
         places = ticks_in((0.0, self.horizon), MOST_TICKS)
-        for k, (time, text) in enumerate(places):
+        for k, (time, number) in enumerate(places):
+            text = number + " s" if k == len(places) - 1 else number
             shapes.append(LineShape([(self.x(time), self.x(time), y, y + 4)], GREY))
-            last = " s" if k == len(places) - 1 else ""
-            shapes.append(TextShape(text + last, [(self.x(time), y + 16)], GREY, SMALL, "middle"))
+            middle = min(self.x(time), self.right + EDGE - width_of(text, SMALL) / 2)
+            shapes.append(TextShape(text, [(middle, y + 16)], GREY, SMALL, "middle"))
         return Block(shapes, y + 22)
 
     def grid(self, top: float, bottom: float) -> Iterator[Shape]:

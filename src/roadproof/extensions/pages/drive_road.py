@@ -1,5 +1,6 @@
 """The road from above at some instants of a drive, all to one scale, driving direction to the right."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
@@ -184,11 +185,11 @@ class _Snapshot:
             yield PolygonShape([self.places(view.outline((*along, right, left)))], SHADES[zone])
             yield StrokesShape([self.places(view.edge(*along, d)) for d in (right, left)], _LINE)
         begin = min(along[0] for _, along, _ in road.pieces)
-        last = -1e9
-        for name, middle in reversed(road.lanes):  # the one on top first
-            y = max(self.place(view.at(begin, middle))[1] + 4, last + _NAMES)
-            last = y
-            yield TextShape(name, [(self.left - 6, y)], GREY, SMALL, "end")
+        places = sorted((self.place(view.at(begin, middle))[1] + 4, name) for name, middle in road.lanes)
+        last = -math.inf
+        for y, name in places:
+            last = max(y, last + _NAMES)
+            yield TextShape(name, [(self.left - 6, last)], GREY, SMALL, "end")
 
     def _box(self, name: str) -> data.Box:
         """Return a vehicle's box in m along from the first vehicle's front and across."""
