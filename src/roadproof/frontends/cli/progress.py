@@ -67,11 +67,11 @@ def warn(line: str) -> None:
     print(line, file=sys.stderr, flush=True)
 
 
-def tell_drive_pictures(wanted: bool) -> None:
-    """Print that drives are written without pictures, where they are wanted and no extension draws them."""
+def warn_of_drive_pictures(pictures: bool) -> None:
+    """Print that drives are written without ``pictures``, where no extension draws them."""
     from roadproof.frontends.report.picture import NO_DRIVE_PICTURES, draws_drives
 
-    if wanted and not draws_drives():
+    if pictures and not draws_drives():
         warn(NO_DRIVE_PICTURES)
 
 
