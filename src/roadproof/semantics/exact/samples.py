@@ -17,8 +17,7 @@ def sample_margin(comparison: Compare, courses: TermPieces, dt: Fraction, count:
     """
     sides = (comparison.left, comparison.right)
     greater, lesser = sides if comparison.op in (">", ">=") else sides[::-1]
-    values = (_sample_term(x, courses, dt, count) for x in (greater, lesser))
-    return [0.0 if x == y else x - y for x, y in zip(*values, strict=True)]
+    return _difference(*(_sample_term(x, courses, dt, count) for x in (greater, lesser)))
 
 
 def _sample_term(term: Term, courses: TermPieces, dt: Fraction, count: int) -> list[float]:
@@ -50,3 +49,7 @@ def _rounded(numerator: int, denominator: int) -> float:
         return numerator / denominator
     except OverflowError:
         return inf if numerator > 0 else -inf
+
+
+def _difference(left: list[float], right: list[float]) -> list[float]:
+    return [0.0 if x == y else x - y for x, y in zip(left, right, strict=True)]
