@@ -28,8 +28,10 @@ from roadproof.extensions.pages.drive_picture import Drawing, drawing_of
 from roadproof.extensions.pages.drive_road import SNAPSHOTS, Snapshots
 from roadproof.extensions.pages.letters import lines_of, width_of
 from roadproof.extensions.pages.shapes import LineShape, PolygonShape, RectangleShape, StrokesShape, TextShape
+from roadproof.frontends.api.drives import DriveFolder
 from roadproof.frontends.report.colours import COLOURS, DANGER, TRUE
 from roadproof.frontends.report.picture import draw_drive
+from roadproof.frontends.report.witness import Views
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Source
 from roadproof.world.models import load_road
@@ -337,3 +339,16 @@ def test_without_the_extension_there_is_no_picture(monkeypatch: pytest.MonkeyPat
         found.plot()
     with pytest.raises(rp.UsageError, match="no installed extension draws them"):
         draw_drive(file_of(), LIBRARY)
+
+
+def test_a_png_of_an_earlier_version_goes_with_its_drive(tmp_path: Path) -> None:
+    first, other = (rp.witness(k).drives[0] for k in (4, 1))
+    write = DriveFolder(tmp_path, LIBRARY, Views())
+    former = tmp_path / "x.png"
+    write(("x", first))
+    assert {x.name for x in tmp_path.iterdir()} == {"x.csv", "x.svg"}
+    former.touch()
+    write(("x", first))
+    assert former.exists()
+    write(("x", other))
+    assert not former.exists()
