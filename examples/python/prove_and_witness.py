@@ -32,4 +32,4 @@ print(f"on the drive: {monitored.verdict}, by {monitored.robustness[0]:.2f} m/s"
 # A drive can also be asked for: what is wanted is written as a claim is.
 wanted = rp.witness(following & (SV.v_lon > "100 km/h") & (faster < "10 km/h"), using=iso, jobs=1)
 print(wanted.verdict, "for", wanted.drives[0].file.formula)
-wanted.plot().save("drive.png")
+wanted.plot().save("drive.svg")

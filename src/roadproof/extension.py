@@ -115,7 +115,9 @@ class Extension(NamedTuple):
     animations: Entries = _NONE
     """Animations of drives (``frontends.report.witness.Animation``), by the name of their format."""
     pictures: Entries = _NONE
-    """Functions that draw an answer of the core (a figure of matplotlib), by the kind of its question."""
+    """Functions that draw an answer of the core, by the kind of its question; ``drive`` draws a drive file,
+    by a library, under a title. Each returns a ``frontends.report.picture.Picture``.
+    """
     completions: Entries = _NONE
     """Functions that give words with descriptions, with which a shell completes a value, by flag."""
     options: Entries = _NONE

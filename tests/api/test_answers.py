@@ -177,7 +177,10 @@ def test_plot(both: Both, tmp_path: Path) -> None:
                 both.answer.plot()
         return
     drawn = both.answer.plot()
-    assert drawn._repr_png_().startswith(b"\x89PNG")
+    assert drawn.png.startswith(b"\x89PNG")
+    assert [drawn._repr_png_(), drawn._repr_svg_()] == (
+        [drawn.png, None] if "png" in drawn.formats else [None, drawn.svg.decode()]
+    )
     assert drawn.save(tmp_path / "x.svg").read_bytes() == drawn.svg
     assert drawn.save(tmp_path / "x.png").read_bytes() == drawn.png
     assert repr(drawn) == "Picture()"

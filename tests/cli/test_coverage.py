@@ -95,7 +95,7 @@ def test_evidence_in_files_and_going_on(
     assert first["verdict"] == "WITNESSED"
     assert all(gap["drive"].endswith(".json") for gap in data["gaps"])
     assert data["gaps"][first["gaps"][0] - 1]["elsewhere"].keys() >= {"main-3", "merge", "depart"}
-    assert len(list(out.glob("gap-*.png"))) == len(data["gaps"])
+    assert len(list(out.glob("gap-*.svg"))) == len(data["gaps"])
     assert main(["check", str(out), "--jobs", "1"]) == 0
     kept = {path.name: path.read_bytes() for path in out.glob("*.json")}
     monkeypatch.setattr(Engines, "answer_claim", lambda *_: pytest.fail("asked again"))
@@ -278,13 +278,13 @@ def test_a_drive_is_written_and_accepted(tmp_path, capsys):
     code, out, _ = witness(capsys, "witness", "4", "--out", str(tmp_path))
     assert code == 0
     assert "WITNESSED" in out
-    assert {p.suffix for p in tmp_path.iterdir() if p.is_file()} == {".json", ".csv", ".png", ".svg"}
+    assert {p.suffix for p in tmp_path.iterdir() if p.is_file()} == {".json", ".csv", ".svg"}
     file = load_drive(tmp_path / "scenario-04-base.json")
     assert file.scenario == 4
     rows = (tmp_path / "scenario-04-base.csv").read_text("utf-8").splitlines()
     assert rows[0] == "time,vehicle,s,d,v_lon,v_lat,a_lon,a_lat,length,width"
     assert len(rows) == 1 + 2 * 151
-    assert (tmp_path / "scenario-04-base.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "scenario-04-base.svg").read_bytes().startswith(b"<?xml")
     assert b"<svg" in (tmp_path / "scenario-04-base.svg").read_bytes()
     assert witness(capsys, "check", str(tmp_path))[0] == 0
 

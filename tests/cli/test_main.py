@@ -191,7 +191,7 @@ def test_a_closed_pipe_is_quiet_and_no_success() -> None:
     ("asked", "last"),
     [
         (["prove", "danger(SV,POV) -> danger(SV,POV)"], "claim-*.json"),
-        (["witness", "4"], "scenario-04-base.png"),
+        (["witness", "4"], "scenario-04-base.svg"),
     ],
 )
 def test_evidence_is_kept_whole_when_the_reader_goes(asked: list[str], last: str, tmp_path: Path) -> None:

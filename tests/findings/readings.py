@@ -262,7 +262,7 @@ def picture_of_a_gap_beside_the_lane(outcome: Outcome) -> str:
         if x["component"] == "behaviourPOV_1" and x["condition"] == "danger(SV, POV) in cutIn"
     ]
     drive: str = index["gaps"][entry["gaps"][0] - 1]["drive"]
-    return f"gaps/{drive.removesuffix('.json')}.png"
+    return f"gaps/{drive.removesuffix('.json')}.svg"
 
 
 def edges_of_a_sector(outcome: Outcome) -> str:

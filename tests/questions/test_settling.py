@@ -379,7 +379,7 @@ def test_a_killed_run_asks_for_what_is_missing(
     assert [x.endswith(f"{last}@base") for x in searched.since()] == [True]
     assert told[0] == told[1]
     assert (out / f"{A3}.json").read_bytes() == before
-    assert (out / f"{A4}.png").exists(), "pictures are drawn at the end"
+    assert (out / f"{A4}.svg").exists(), "pictures are drawn at the end"
     assert accepted(out) == ["IMPOSSIBLE base", "WITNESSED scenario 3 base", "WITNESSED scenario 4 base"]
 
 

@@ -33,9 +33,9 @@ from roadproof.extensions.drivers.preventable.beside import (
 from roadproof.extensions.drivers.preventable.report import as_text, shown_symbols
 from roadproof.extensions.drivers.restriction import Restriction
 from roadproof.extensions.drivers.words import _PARTS, legend, words_of_parts
+from roadproof.extensions.pages.drive_data import strips_of
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.drive_data import strips_of
 from roadproof.logic.formula import And, Application, subformulas
 from roadproof.semantics.exact.algebraic import Root, as_float
 

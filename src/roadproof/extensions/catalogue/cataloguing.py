@@ -27,10 +27,10 @@ from roadproof.extensions.drivers.restricting import restricted
 from roadproof.extensions.traffic.evaluate.decisions import Decision
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, definitions_of
-from roadproof.frontends.api.pictures import Picture, drawn, picture
 from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of, one_of
 from roadproof.frontends.report.cases import Case
+from roadproof.frontends.report.picture import Picture, draw_drive, drawn, draws_drives, picture
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import number_in, numbers_of
@@ -150,14 +150,12 @@ class CatalogueAnswer(QuestionAnswers[CatalogueView], BuildResult):
 
     def _driven_pictures(self) -> Iterator[tuple[str, Picture]]:
         """Yield drives in which driver models drive SV; of many only those that are not preventable."""
-        from roadproof.frontends.report.drive import draw_drive
-
         sides = {driver_claim_name(test, x): x.side for test, x in self.decisions}
         files = {name: x.drive.file for name, x in self.view.driven.items() if x.drive is not None}
         if len(files) > MOST_DRIVEN:
             files = {name: x for name, x in files.items() if sides.get(name) != "preventable"}
-        for name, file in [*files.items()][:MOST_DRIVEN]:
-            yield name, picture(draw_drive(file, self.library))
+        for name, file in [*files.items()][:MOST_DRIVEN] if draws_drives() else ():
+            yield name, draw_drive(file, self.library)
 
     def _drawn(self) -> list[DrivePicture]:
         """Return the pictures of tests, by the first scenario that each shows."""

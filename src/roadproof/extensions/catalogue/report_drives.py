@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from roadproof.extensions.catalogue.curves import DriveCurves
-from roadproof.frontends.report.drive import COLOURS
+from roadproof.frontends.report.colours import COLOURS
 from roadproof.frontends.report.figures import make_page
 from roadproof.runtime.records import dataclass
 

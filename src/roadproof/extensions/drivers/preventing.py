@@ -31,11 +31,11 @@ from roadproof.extensions.kernel.boundary import Boundary, BoundaryRuling, judge
 from roadproof.extensions.kernel.coq import ready
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, load
-from roadproof.frontends.api.pictures import Picture, drawn, drive_pictures, picture
 from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.numbers import count, took
+from roadproof.frontends.report.picture import Picture, drawn, drive_pictures, picture
 from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import Number, exact

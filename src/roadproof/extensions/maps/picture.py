@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from roadproof.extensions.maps.overview import MapStretch
-from roadproof.frontends.report.drive import SHADES
+from roadproof.frontends.report.colours import SHADES
 from roadproof.frontends.report.figures import as_bytes, make_page
 from roadproof.world.reference_line import ReferenceLine
 

@@ -9,6 +9,8 @@ from fractions import Fraction
 from functools import cached_property
 
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.extensions.pages import drive_data as data
+from roadproof.extensions.pages.plane import Point, Points, RoadView, extent_of, views_along
 from roadproof.extensions.pages.scene import (
     DASH,
     EDGE,
@@ -18,14 +20,9 @@ from roadproof.extensions.pages.scene import (
     AnimationScene,
     Pavement,
     PavementShift,
-    PolygonShape,
-    Shape,
-    StrokesShape,
-    TextShape,
 )
-from roadproof.frontends.report import drive_data as data
-from roadproof.frontends.report.drive import SHADES
-from roadproof.frontends.report.plane import Point, Points, RoadView, extent_of, views_along
+from roadproof.extensions.pages.shapes import PolygonShape, Shape, StrokesShape, TextShape
+from roadproof.frontends.report.colours import SHADES
 from roadproof.library.specification import Library
 from roadproof.runtime.records import dataclass
 
@@ -139,4 +136,4 @@ class BentScene(AnimationScene):
             fits = long >= LETTERS[0] * len(name) and wide >= LETTERS[1]
             down = 4 if fits else -4 - wide / 2
             places = [(x, y + down) for x, y in centres]
-            yield TextShape(name, places, "white" if fits else colour, size=11, middle=True)
+            yield TextShape(name, places, "white" if fits else colour, size=11, anchor="middle")

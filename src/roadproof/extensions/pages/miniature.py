@@ -11,8 +11,9 @@ from xml.etree.ElementTree import Element, tostring
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.extensions.maps.xml_writer import element
 from roadproof.extensions.pages.bent_scene import BentScene, scene_of
-from roadproof.extensions.pages.scene import DASH, AnimationScene, PolygonShape, StrokesShape
-from roadproof.frontends.report.plane import Points
+from roadproof.extensions.pages.plane import Points
+from roadproof.extensions.pages.scene import DASH, AnimationScene
+from roadproof.extensions.pages.shapes import PolygonShape, StrokesShape
 from roadproof.library.specification import Library
 
 WIDTH, MARGIN, LANE_PIXELS, LEAST = 320.0, 12.0, 5.0, 8.0  # pixels; of a vehicle along, at least ``LEAST``

@@ -1,65 +1,60 @@
 """Draws a drive as one animated SVG file, which a browser plays without scripts."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from xml.etree.ElementTree import Element
+from collections.abc import Iterator, Sequence
+from typing import assert_never
 
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.extensions.maps.xml_writer import document, element
+from roadproof.extensions.maps.xml_writer import Element, element
 from roadproof.extensions.pages.bent_scene import scene_of
-from roadproof.extensions.pages.scene import (
-    PAUSE,
-    WIDTH,
-    AnimationScene,
+from roadproof.extensions.pages.drive_data import GRAIN
+from roadproof.extensions.pages.plane import Points
+from roadproof.extensions.pages.scene import PAUSE, WIDTH, AnimationScene, Pavement, headings, timeline_rows
+from roadproof.extensions.pages.shapes import (
+    BOX,
+    ENDS,
     LineShape,
-    Pavement,
     PolygonShape,
     RectangleShape,
     Shape,
     StrokesShape,
-    headings,
-    timeline_rows,
+    TextShape,
+    attributes,
+    element_at,
+    points_text,
+    px,
+    svg_of,
 )
-from roadproof.frontends.report.drive import DANGER
-from roadproof.frontends.report.drive_data import GRAIN
-from roadproof.frontends.report.plane import Points
+from roadproof.frontends.report.colours import DANGER
 from roadproof.library.specification import Library
-
-_BOX, _ENDS = ("x", "y", "width", "height"), ("x1", "x2", "y1", "y2")
 
 
 def draw_moving(file: DriveFile, library: Library) -> bytes:
     """Return the animated SVG of a drive; its heading is the scenario in words, or the formula."""
     scene = scene_of(file, library)
-    root = element(
-        "svg",
-        element("rect", width="100%", height="100%", fill="white"),
+    shapes = (*scene.vehicles(), *timeline_rows(scene))
+    drawn = [
         *(_element_of(scene, x) for x in headings(scene)),
         *_road(scene, scene.pavement()),
-        *(_element_of(scene, x) for x in (*scene.vehicles(), *timeline_rows(scene))),
-        xmlns="http://www.w3.org/2000/svg",
-        viewBox=f"0 0 {WIDTH:g} {scene.height:g}",
-        width=f"{WIDTH:g}",
-        height=f"{scene.height:g}",
-        **{"font-family": "Helvetica, Arial, sans-serif"},
-    )
-    return document(root)
+        *(_element_of(scene, x) for x in shapes),
+    ]
+    return svg_of(drawn, WIDTH, scene.height)
 
 
 def _road(scene: AnimationScene, lanes: Pavement) -> Iterator[Element]:
     """Yield the lanes and RSS areas, both clipped to the window."""
-    cut = element("rect", **_attributes(_BOX, lanes.window))
+    cut = element("rect", **attributes(BOX, lanes.window))
     yield element("clipPath", cut, id="window")
     drawn = [_element_of(scene, x) for x in lanes.shapes]
     here, still = [x.x for x in lanes.shifts], lanes.shifts[scene.still]
     if lanes.pivot is None:
         moving = _transform_animation(scene, "translate", _loop_values(here))
-        moved = element("g", *drawn, moving, transform=f"translate({_px(still.x)} 0)")
+        moved = element("g", *drawn, moving, transform=f"translate({px(still.x)} 0)")
     else:
-        places = _joined([f"{_px(x.x)} {_px(x.y)}" for x in lanes.shifts])
-        pivot = " ".join(map(_px, lanes.pivot))
+        places = _joined([f"{px(x.x)} {px(x.y)}" for x in lanes.shifts])
+        pivot = " ".join(map(px, lanes.pivot))
         turns = _joined([f"{x.turned:.2f} {pivot}" for x in lanes.shifts])
         moving = _transform_animation(scene, "translate", places)
-        inner = element("g", *drawn, moving, transform=f"translate({_px(still.x)} {_px(still.y)})")
+        inner = element("g", *drawn, moving, transform=f"translate({px(still.x)} {px(still.y)})")
         turning = _transform_animation(scene, "rotate", turns)
         moved = element("g", inner, turning, transform=f"rotate({still.turned:.2f} {pivot})")
     yield element(
@@ -69,60 +64,40 @@ def _road(scene: AnimationScene, lanes: Pavement) -> Iterator[Element]:
 
 def _element_of(scene: AnimationScene, shape: Shape) -> Element:
     """Return the element of a shape at the instant of a still picture, with its animations."""
-    if isinstance(shape, RectangleShape):
-        still, changes = _at_instants(scene, _BOX, shape.boxes)
-        opacity = {} if shape.opacity == 1 else {"fill-opacity": f"{shape.opacity:g}"}
-        made = element("rect", **still, fill=shape.fill, **opacity)
-        if shape.red:
-            changes.append(_fill_animation(scene, shape.red, DANGER, shape.fill))
-    elif isinstance(shape, PolygonShape):
-        opacity = {} if shape.opacity == 1 else {"fill-opacity": f"{shape.opacity:g}"}
-        here = shape.outlines[scene.still if len(shape.outlines) > 1 else 0]
-        seam = {} if opacity else {"stroke": shape.fill, "stroke-width": "0.6"}
-        made = element("polygon", points=_points(here), fill=shape.fill, **opacity, **seam)
-        changes = [_outline_animation(scene, shape.outlines)] if len(shape.outlines) > 1 else []
-        if shape.red:
-            changes.append(_fill_animation(scene, shape.red, DANGER, shape.fill))
-    elif isinstance(shape, StrokesShape):
-        way = " ".join(f"M{_points(x)}" for x in shape.lines)
-        made, changes = element("path", d=way, fill="none", stroke=shape.stroke), []
-    elif isinstance(shape, LineShape):
-        still, changes = _at_instants(scene, _ENDS, shape.ends)
-        dash = {} if shape.dash is None else {"stroke-dasharray": " ".join(map(_px, shape.dash))}
-        made = element("line", **still, stroke=shape.stroke, **dash)
-    else:
-        still, changes = _at_instants(scene, ("x", "y"), shape.places)
-        anchor = {"text-anchor": "middle"} if shape.middle else {}
-        look = {"fill": shape.fill, "font-size": str(shape.size)}
-        made = element("text", text=shape.text, **still, **look, **anchor)
-    made.extend(changes)
+    made = element_at(shape, scene.still)
+    made.extend(_animations(scene, shape))
     return made
 
 
 # --- changes ------------------------------------------------------------------------------------
 
 
-def _px(value: float) -> str:
-    return f"{value:.1f}".removesuffix(".0")
+def _animations(scene: AnimationScene, shape: Shape) -> Iterator[Element]:
+    """Yield an animation for each attribute of a shape that changes, and for its fill."""
+    match shape:
+        case RectangleShape():
+            yield from _attribute_animations(scene, BOX, shape.boxes)
+        case PolygonShape():
+            if len(shape.outlines) > 1:
+                yield _outline_animation(scene, shape.outlines)
+        case LineShape():
+            yield from _attribute_animations(scene, ENDS, shape.ends)
+        case TextShape():
+            yield from _attribute_animations(scene, ("x", "y"), shape.places)
+        case StrokesShape():
+            pass
+        case _:
+            assert_never(shape)
+    if isinstance(shape, RectangleShape | PolygonShape) and shape.red:
+        yield _fill_animation(scene, shape.red, DANGER, shape.fill)
 
 
-def _attributes(names: Sequence[str], values: Sequence[float]) -> dict[str, str]:
-    return dict(zip(names, map(_px, values), strict=True))
-
-
-def _at_instants(
+def _attribute_animations(
     scene: AnimationScene, names: Sequence[str], values: Sequence[Sequence[float]]
-) -> tuple[dict[str, str], list[Element]]:
-    """Return attributes at the instant of a still picture, and animations of those that change."""
-    still = values[scene.still if len(values) > 1 else 0]
-    each = dict(zip(names, zip(*values, strict=True), strict=True))
-    return _attributes(names, still), [*_attribute_animations(scene, each)]
-
-
-def _attribute_animations(scene: AnimationScene, values: Mapping[str, Sequence[float]]) -> Iterator[Element]:
-    """Yield an animation for each attribute that changes; ``values``: by attribute, at each instant."""
-    for name, numbers in values.items():
-        if len({_px(x) for x in numbers}) > 1:
+) -> Iterator[Element]:
+    """Yield an animation for each attribute that changes; ``values``: of all attributes at each instant."""
+    for name, numbers in zip(names, zip(*values, strict=True), strict=True):
+        if len({px(x) for x in numbers}) > 1:
             yield element("animate", attributeName=name, values=_loop_values(numbers), **_loop_timing(scene))
 
 
@@ -132,17 +107,13 @@ def _transform_animation(scene: AnimationScene, kind: str, values: str) -> Eleme
 
 
 def _outline_animation(scene: AnimationScene, outlines: Sequence[Points]) -> Element:
-    values = _joined([_points(x) for x in outlines])
+    values = _joined([points_text(x) for x in outlines])
     return element("animate", attributeName="points", values=values, **_loop_timing(scene))
-
-
-def _points(points: Points) -> str:
-    return " ".join(f"{_px(x)},{_px(y)}" for x, y in points)
 
 
 def _loop_values(numbers: Sequence[float]) -> str:
     """Return the numbers of one loop."""
-    return _joined([*map(_px, numbers)])
+    return _joined([*map(px, numbers)])
 
 
 def _joined(values: Sequence[str]) -> str:

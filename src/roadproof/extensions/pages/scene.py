@@ -8,13 +8,14 @@ each part of the formula and for danger, with a line at the instant that is show
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import cached_property
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
-from roadproof.frontends.report import drive_data as data
-from roadproof.frontends.report.drive import COLOURS, DANGER, SHADES, TRUE
-from roadproof.frontends.report.plane import Point, Points
+from roadproof.extensions.pages import drive_data as data
+from roadproof.extensions.pages.plane import Point
+from roadproof.extensions.pages.shapes import LineShape, RectangleShape, Shape, TextShape
+from roadproof.frontends.report.colours import COLOURS, DANGER, SHADES, TRUE
 from roadproof.frontends.report.sheet import excerpt
 from roadproof.library.specification import Library
 from roadproof.runtime.records import dataclass
@@ -22,68 +23,13 @@ from roadproof.world.length_error import length_error_of
 from roadproof.world.motion import State, states_at
 
 WIDTH, EDGE, NAMES = 860.0, 14.0, 230.0  # pixels: the picture, its margin, the column of names
-ROW, TITLE, LETTER = 17.0, 44.0, 12
+ROW, TITLE = 17.0, 44.0
 LANE_PIXELS = 7.0  # a metre across has at least that many
 DASH = (3, 9)  # metres of paint and of a gap between lanes
 PAUSE = Fraction(1)  # how long the last state stands, in s
 MOST_STRIPS, DEEPEST = 9, 2
 LONGEST = int(NAMES / 6.2)  # letters of a name
 STEPS, MOST_TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000), 12  # whole seconds between ticks
-
-
-@dataclass(frozen=True)
-class RectangleShape:
-    """A rectangle (left, top, width, height) at each instant, or once; ``red``: whether it is red, at each
-    instant.
-    """
-
-    boxes: Sequence[data.Box]
-    fill: str
-    opacity: float = 1.0
-    red: Sequence[bool] = ()
-
-
-@dataclass(frozen=True)
-class LineShape:
-    """A line between two points (x, x, y, y) at each instant, or once; ``dash``: px of each dash and gap."""
-
-    ends: Sequence[data.Box]
-    stroke: str
-    dash: data.Span | None = None
-
-
-@dataclass(frozen=True)
-class TextShape:
-    """A text that begins or is centred at a point; ``places``: the point at each instant, or once."""
-
-    text: str
-    places: Sequence[data.Span]
-    fill: str = "#111111"
-    size: int = LETTER
-    middle: bool = False
-
-
-@dataclass(frozen=True)
-class PolygonShape:
-    """A polygon with its corners in px at each instant, or once; ``red``: whether it is red, at
-    each instant.
-    """
-
-    outlines: Sequence[Points]
-    fill: str
-    opacity: float = 1.0
-    red: Sequence[bool] = ()
-
-
-@dataclass(frozen=True)
-class StrokesShape:
-    """Lines through points in px, the same at all instants."""
-
-    lines: Sequence[Points]
-    stroke: str
-
-
-Shape: TypeAlias = RectangleShape | LineShape | TextShape | PolygonShape | StrokesShape
 
 
 class PavementShift(NamedTuple):
@@ -267,7 +213,7 @@ class AnimationScene:
             yield RectangleShape(boxes, colour)
             fits = boxes[0][2] >= 9 * len(name)
             places = [(x + w / 2, y + h / 2 + (4 if fits else -8)) for x, y, w, h in boxes]
-            yield TextShape(name, places, "white" if fits else colour, size=11, middle=True)
+            yield TextShape(name, places, "white" if fits else colour, size=11, anchor="middle")
 
     @cached_property
     def strips(self) -> list[data.Strip]:
@@ -355,10 +301,10 @@ def timeline_rows(scene: AnimationScene) -> Iterator[Shape]:
     step = next((x for x in STEPS if scene.file.horizon <= MOST_TICKS * x), STEPS[-1])
     for second in range(0, int(scene.file.horizon) + 1, step):
         place = (begin + second * pixels, bottom + 14)
-        yield TextShape(f"{second} s", [place], "#555555", size=10, middle=True)
+        yield TextShape(f"{second} s", [place], "#555555", size=10, anchor="middle")
     if scene.begins is not None:
         x = begin + scene.begins * pixels
         yield LineShape([(x, x, top - 8, bottom)], DANGER, (4, 2))
-        yield TextShape("danger begins", [(x, top - 11)], DANGER, size=11, middle=True)
+        yield TextShape("danger begins", [(x, top - 11)], DANGER, size=11, anchor="middle")
     places = [begin + float(time) * pixels for time in scene.times]
     yield LineShape([(x, x, top - 4, bottom) for x in places], "#222222")

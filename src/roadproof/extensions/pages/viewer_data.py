@@ -17,9 +17,9 @@ from roadproof.extensions.drivers.words import words_of_parts
 from roadproof.extensions.exchange.export.subject import span_of
 from roadproof.extensions.pages import viewer_document as document
 from roadproof.extensions.pages.blame import blame
+from roadproof.extensions.pages.drive_data import GRAIN, Direction, dangers_of, distances_of, vehicles_of
 from roadproof.extensions.pages.places import places_of
 from roadproof.extensions.traffic.evaluate.robust import robustness
-from roadproof.frontends.report.drive_data import GRAIN, Direction, dangers_of, distances_of, vehicles_of
 from roadproof.library.bind import bind, values_with
 from roadproof.library.scenario_references import read_query
 from roadproof.library.scenarios import SUBJECT, scenario_number

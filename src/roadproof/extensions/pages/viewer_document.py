@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import is_dataclass
 from typing import NamedTuple
 
+from roadproof.extensions.pages.drive_data import Danger
 from roadproof.extensions.pages.places import FormulaPlace
-from roadproof.frontends.report.drive_data import Danger
 from roadproof.runtime.records import dataclass
 from roadproof.world.road import Zone
 

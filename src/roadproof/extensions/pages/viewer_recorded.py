@@ -6,10 +6,10 @@ from typing import Any
 
 from roadproof.errors import RoadproofError
 from roadproof.extensions.pages import viewer_document as document
+from roadproof.extensions.pages.drive_data import Direction, nearer_in, too_near
 from roadproof.extensions.pages.viewer_data import road_view, short_number
 from roadproof.extensions.traffic.evaluate.observed import MonitorResult, TruthStrip, margins_of
 from roadproof.extensions.traffic.evaluate.one_trace import OneTrace
-from roadproof.frontends.report.drive_data import Direction, nearer_in, too_near
 from roadproof.library.bind import bind
 from roadproof.library.roles import vehicle_order
 from roadproof.library.specification import Specification

@@ -22,9 +22,9 @@ from roadproof.extensions.surveys.keywords import ClassifyKeywords
 from roadproof.extensions.surveys.report import classify as report
 from roadproof.extensions.traffic.formats.sources import find_sources
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of
-from roadproof.frontends.api.pictures import Picture, drawn, picture
 from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of
+from roadproof.frontends.report.picture import Picture, drawn, picture
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import numbers_of

@@ -25,10 +25,10 @@ from roadproof.extensions.surveys.keywords import CoverageKeywords
 from roadproof.extensions.surveys.report import coverage as report
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, definitions_of
-from roadproof.frontends.api.pictures import Picture, picture
 from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.api.settings import as_road, basis_of
 from roadproof.frontends.report.cases import Case
+from roadproof.frontends.report.picture import Picture, draws_drives
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.option import takes
 from roadproof.library.words import ScenarioWords, words_by_number
@@ -126,8 +126,8 @@ class Coverages(QuestionAnswers[CoverageView], BuildResult):
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """Yield a picture of each gap."""
-        gaps = ((x, gap) for x in self.surveyed.classes for gap in x.gaps)
-        return ((f"gap-{k}", picture(report.draw_gap(*one, self.library))) for k, one in enumerate(gaps, 1))
+        gaps = ((x, gap) for x in self.surveyed.classes for gap in x.gaps) if draws_drives() else ()
+        return ((f"gap-{k}", report.draw_gap(*one, self.library)) for k, one in enumerate(gaps, 1))
 
     def draw_beside(self, jobs: Jobs = None, progress: Progress | None = None) -> None:
         """Draw each gap beside its file, if answers are in a folder."""

@@ -25,9 +25,9 @@ from roadproof.extensions.surveys.report import explore as report
 from roadproof.extensions.surveys.settings import Explore
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.phrases import Term
-from roadproof.frontends.api.pictures import Picture, drawn, picture
 from roadproof.frontends.api.question_answers import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of, searches_of, setting
+from roadproof.frontends.report.picture import Picture, drawn, picture
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import Number
@@ -84,7 +84,7 @@ class Explorations(QuestionAnswers[ExploreView]):
         every = (
             x for name, explorable in named for x in report.draw_all(name, explorable, self.explored[name])
         )
-        return drawn({file: picture(figure) for file, figure in every})
+        return drawn(dict(every))
 
     def __str__(self) -> str:
         named = self.question.named.items()

@@ -43,9 +43,9 @@ from roadproof.extensions.traffic.scenario_parts import COMPARISON
 from roadproof.extensions.traffic.settings import Evaluate
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, load
-from roadproof.frontends.api.pictures import Picture, picture
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.cases import Case
+from roadproof.frontends.report.picture import Picture, picture
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import exact
 from roadproof.library.scenarios import MIN_DANGER

@@ -49,9 +49,9 @@ from roadproof.extensions.traffic.report.one_trace import as_text, draw_strips
 from roadproof.extensions.traffic.scenario_parts import lane_owner
 from roadproof.extensions.traffic.settings import MonitorSettings
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of, load
-from roadproof.frontends.api.pictures import Picture, picture
 from roadproof.frontends.api.settings import as_road, positive
 from roadproof.frontends.api.table import Row, Table
+from roadproof.frontends.report.picture import Picture, picture
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import bind, values_with

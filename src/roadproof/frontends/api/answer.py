@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from roadproof.evidence.kinds import Evidence
     from roadproof.evidence.strict import JsonObject
     from roadproof.frontends.api.checking import CheckReport, Solver
-    from roadproof.frontends.api.pictures import Picture
+    from roadproof.frontends.report.picture import Picture
     from roadproof.frontends.report.sheet import Sheet
     from roadproof.verdict import ExitCode, Verdict
     from roadproof.world.length_error import LengthError

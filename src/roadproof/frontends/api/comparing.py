@@ -24,7 +24,7 @@ from roadproof.verdict import ExitCode, Verdict
 if TYPE_CHECKING:
     from roadproof.evidence import answer as answers
     from roadproof.evidence.kinds import Evidence
-    from roadproof.frontends.api.pictures import Picture
+    from roadproof.frontends.report.picture import Picture
     from roadproof.frontends.report.sheet import Sheet
     from roadproof.frontends.settings.keywords import CompareKeywords
     from roadproof.runtime.budget import Cost
@@ -71,7 +71,7 @@ class ComparisonAnswer(QuestionAnswers[Comparison]):
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """Yield a picture of each drive that separates the claims."""
         drives = ((name, x.drive) for name, x in self.view.directions.items())
-        from roadproof.frontends.api.pictures import drive_pictures  # here: few answers are drawn
+        from roadproof.frontends.report.picture import drive_pictures  # here: few answers are drawn
 
         return drive_pictures(drives, self.library)
 

@@ -44,12 +44,15 @@ if TYPE_CHECKING:
     from roadproof.evidence.judged import JudgedDrive
     from roadproof.evidence.kinds import Evidence
     from roadproof.evidence.strict import JsonObject
-    from roadproof.frontends.api.pictures import Picture
     from roadproof.frontends.report.cases import Case
+    from roadproof.frontends.report.picture import Picture
     from roadproof.frontends.report.sheet import Sheet
     from roadproof.frontends.settings.keywords import WitnessKeywords
     from roadproof.library.specification import Library
     from roadproof.world.road import Road
+
+FORMER = (".png",)
+"""The endings of files beside a drive that earlier versions wrote."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +71,7 @@ class DriveFolder:
         for ending, content in self.views.of(judged, self.library):
             write_atomic(self.folder / f"{name}{ending}", content)
         if samples.read_bytes() != former:  # the other files are those of a former drive
-            for ending in {*every_view().endings} - {*self.views.endings}:
+            for ending in {*every_view().endings, *FORMER} - {*self.views.endings}:
                 (self.folder / f"{name}{ending}").unlink(missing_ok=True)
 
     def lacks(self, name: str) -> bool:
@@ -169,7 +172,7 @@ class Witnesses(QuestionAnswers[WitnessView], BuildResult):
             yield from zip(self.question.claim_names(name), result.drives, strict=False)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
-        from roadproof.frontends.api.pictures import drive_pictures  # here: few answers are drawn
+        from roadproof.frontends.report.picture import drive_pictures  # here: few answers are drawn
 
         return drive_pictures(((f"drive-{k}", x) for k, x in enumerate(self.drives, 1)), self.library)
 

@@ -7,10 +7,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Unpack
 
 from roadproof.frontends.api.definitions import Among, Definitions, load
-from roadproof.frontends.api.pictures import Picture, drawn, picture_by
 from roadproof.frontends.api.question_answers import QuestionAnswers, evidence_of
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.report import order as order_report
+from roadproof.frontends.report.picture import Picture, drawn, picture_by
 from roadproof.frontends.settings import relations as settings
 from roadproof.frontends.settings.option import takes
 from roadproof.library.words import ScenarioWords, words_in_sets

@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     from roadproof.evidence.kernels import KernelAnswer, KernelName, KernelRuling
     from roadproof.evidence.kinds import Evidence
     from roadproof.evidence.strict import JsonObject
-    from roadproof.frontends.api.pictures import Picture
     from roadproof.frontends.report.cases import Case, Location
+    from roadproof.frontends.report.picture import Picture
     from roadproof.frontends.report.sheet import Sheet
     from roadproof.frontends.settings.keywords import ProveKeywords
     from roadproof.library.specification import Specification
@@ -175,7 +175,7 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """The drives that refute a claim."""
-        from roadproof.frontends.api.pictures import drive_pictures  # here: few answers are drawn
+        from roadproof.frontends.report.picture import drive_pictures  # here: few answers are drawn
 
         return drive_pictures(((x.task.name, x.drive) for x in self.answers), self.library)
 

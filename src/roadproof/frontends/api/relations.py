@@ -21,7 +21,7 @@ from roadproof.verdict import ExitCode, Verdict, exit_code
 
 if TYPE_CHECKING:
     from roadproof.evidence.kinds import Evidence
-    from roadproof.frontends.api.pictures import Picture
+    from roadproof.frontends.report.picture import Picture
     from roadproof.frontends.report.sheet import Sheet
     from roadproof.frontends.settings.keywords import OverlapKeywords
 
@@ -65,13 +65,13 @@ class Overlaps(QuestionAnswers[OverlapView]):
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """The heat map, which an extension draws."""
-        from roadproof.frontends.api.pictures import picture_by  # here: few answers are drawn
+        from roadproof.frontends.report.picture import picture_by  # here: few answers are drawn
 
         return picture_by("overlap", self)
 
     def files(self, pictures: bool) -> dict[str, bytes]:
         """Return the table of the pairs, and the heat map with ``pictures``, by the names of their files."""
-        from roadproof.frontends.api.pictures import drawn  # here: most answers are written nowhere
+        from roadproof.frontends.report.picture import drawn  # here: most answers are written nowhere
         from roadproof.frontends.report.sheet import as_csv
 
         table = {"overlap.csv": as_csv(self._sheet).encode()}

@@ -67,6 +67,14 @@ def warn(line: str) -> None:
     print(line, file=sys.stderr, flush=True)
 
 
+def warn_of_drive_pictures(pictures: bool) -> None:
+    """Print that drives are written without ``pictures``, where no extension draws them."""
+    from roadproof.frontends.report.picture import NO_DRIVE_PICTURES, draws_drives
+
+    if pictures and not draws_drives():
+        warn(NO_DRIVE_PICTURES)
+
+
 def tell_road(road: "Road | None") -> None:
     """Print what was left out of a road's map, and how far the road bends."""
     if road is None:

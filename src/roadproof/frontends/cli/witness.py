@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.frontends.cli.basis import in_order, read_definitions, study_keywords
 from roadproof.frontends.cli.options import add_what_arguments, some_or_all, write_build_results, write_json
-from roadproof.frontends.cli.progress import clear, tell_road, tell_stage
+from roadproof.frontends.cli.progress import clear, tell_road, tell_stage, warn_of_drive_pictures
 from roadproof.frontends.cli.streams import print_at_once
 from roadproof.frontends.settings.questions import Witness
 from roadproof.runtime.progress import listening
@@ -61,6 +61,8 @@ def run(args: argparse.Namespace) -> int:
         witnesses = witness_all(question, given, each)
     if args.out is not None and not written and plain:
         print(f"no drive was found, so nothing was written to {args.out}")
+    if args.out is not None:
+        warn_of_drive_pictures(given.pictures and bool(witnesses.drives))
     write_build_results(args, witnesses)
     if args.json:
         write_json(witnesses.as_data(), args.json)

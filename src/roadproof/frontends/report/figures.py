@@ -41,14 +41,6 @@ def _matplotlib() -> tuple[Any, Any]:
     return Figure, FigureCanvasAgg
 
 
-def draw_box(axes: Any, box: tuple[float, float, float, float], colour: str) -> None:
-    """A vehicle's box: left, right, bottom, top."""
-    from matplotlib.patches import Rectangle
-
-    left, right, bottom, top = box
-    axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, color=colour, zorder=3))
-
-
 def legend_beside(axes: Any) -> None:
     """Draw the legend of ``axes`` to their right, off the curves."""
     if axes.get_legend_handles_labels()[1]:

@@ -79,7 +79,9 @@ def _core_of(result: SearchResult) -> str:
 
 @dataclass(frozen=True)
 class Views:
-    """The files beside a drive file: samples, ``pictures`` where wanted, ``animations`` by format."""
+    """The files beside a drive file: samples, ``pictures`` where they are wanted and an extension draws them,
+    ``animations`` by format.
+    """
 
     pictures: bool = True
     animations: tuple[str, ...] = ()
@@ -88,8 +90,9 @@ class Views:
     def endings(self) -> tuple[str, ...]:
         """The endings of the file names."""
         from roadproof.frontends.report.animations import animations
+        from roadproof.frontends.report.picture import draws_drives
 
-        drawn = (".png", ".svg") if self.pictures else ()
+        drawn = (".svg",) if self.pictures and draws_drives() else ()
         return (".csv", *drawn, *(animations()[x].ending for x in self.animations))
 
     def of(self, judged: JudgedDrive, library: Library) -> Iterator[tuple[str, bytes]]:
@@ -97,13 +100,11 @@ class Views:
         from roadproof.frontends.report.samples import csv_of
 
         yield ".csv", csv_of(judged.file).encode()
-        if self.pictures:
-            from roadproof.frontends.report.drive import draw_drive
-            from roadproof.frontends.report.figures import as_bytes
-
-            for kind, content in as_bytes(draw_drive(judged.file, library)).items():
-                yield f".{kind}", content
         from roadproof.frontends.report.animations import animations
+        from roadproof.frontends.report.picture import draw_drive, draws_drives
+
+        if self.pictures and draws_drives():
+            yield ".svg", draw_drive(judged.file, library).svg
 
         for name in self.animations:
             animation = animations()[name]

@@ -2,19 +2,14 @@
 
 from fractions import Fraction
 from math import inf
-from typing import Any, TypeAlias
-
-import numpy as np
 
 from roadproof.logic.formula import Compare
 from roadproof.logic.terms import Inverse, Term
 from roadproof.semantics.exact.piecewise import Pieces
 from roadproof.semantics.exact.signals import TermPieces
 
-Array: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
 
-
-def sample_margin(comparison: Compare, courses: TermPieces, dt: Fraction, count: int) -> Array:
+def sample_margin(comparison: Compare, courses: TermPieces, dt: Fraction, count: int) -> list[float]:
     """Return by how much a comparison holds at k·dt for k < count, in its units; ∞ - ∞ is 0.
 
     The margin of ``left >= right`` is ``left - right``, of ``left <= right`` the reverse; strictness is
@@ -25,17 +20,15 @@ def sample_margin(comparison: Compare, courses: TermPieces, dt: Fraction, count:
     return _difference(*(_sample_term(x, courses, dt, count) for x in (greater, lesser)))
 
 
-def _sample_term(term: Term, courses: TermPieces, dt: Fraction, count: int) -> Array:
+def _sample_term(term: Term, courses: TermPieces, dt: Fraction, count: int) -> list[float]:
     if isinstance(term, Inverse):
-        inner = _sample_term(term.term, courses, dt, count)
-        with np.errstate(divide="ignore", over="ignore"):
-            return np.where(inner == 0, inf, 1 / inner)
+        return [inf if x == 0 else 1 / x for x in _sample_term(term.term, courses, dt, count)]
     return _sample(courses.of(term), dt, count)
 
 
-def _sample(pieces: Pieces, dt: Fraction, count: int) -> Array:
+def _sample(pieces: Pieces, dt: Fraction, count: int) -> list[float]:
     """The function at k·dt for k < count, each value exact and then rounded."""
-    values = np.empty(count)
+    values = list[float]()
     following = [start for start, _ in pieces[1:]]
     piece = 0
     for k in range(count):
@@ -47,7 +40,7 @@ def _sample(pieces: Pieces, dt: Fraction, count: int) -> Array:
         for n in reversed(polynomial.numerators):
             value = value * top + n * scale
             scale *= bottom
-        values[k] = _rounded(value * bottom, scale * polynomial.denominator)
+        values.append(_rounded(value * bottom, scale * polynomial.denominator))
     return values
 
 
@@ -58,6 +51,5 @@ def _rounded(numerator: int, denominator: int) -> float:
         return inf if numerator > 0 else -inf
 
 
-def _difference(left: Array, right: Array) -> Array:
-    with np.errstate(invalid="ignore"):
-        return np.where(left == right, 0.0, left - right)
+def _difference(left: list[float], right: list[float]) -> list[float]:
+    return [0.0 if x == y else x - y for x, y in zip(left, right, strict=True)]

@@ -19,7 +19,7 @@ from roadproof.extensions.pages.animation import draw_animation
 from roadproof.extensions.pages.frames import MOST_FRAMES, draw_film
 from roadproof.extensions.pages.scene import AnimationScene
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.drive import COLOURS, DANGER, SHADES
+from roadproof.frontends.report.colours import COLOURS, DANGER, SHADES
 from roadproof.library.loading import bundled_library
 from roadproof.world.motion import state_at
 

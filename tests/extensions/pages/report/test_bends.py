@@ -17,13 +17,15 @@ from PIL import Image
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.extensions.pages.animation import draw_animation
 from roadproof.extensions.pages.bent_scene import BentScene, scene_of
+from roadproof.extensions.pages.drive_picture import drawing_of
 from roadproof.extensions.pages.frames import draw_film
 from roadproof.extensions.pages.miniature import miniature, small_scene
-from roadproof.extensions.pages.scene import AnimationScene, PolygonShape, StrokesShape
+from roadproof.extensions.pages.plane import RoadView
+from roadproof.extensions.pages.scene import AnimationScene
+from roadproof.extensions.pages.shapes import PolygonShape, StrokesShape, TextShape
 from roadproof.extensions.pages.viewer_data import viewer_data
 from roadproof.extensions.pages.viewer_page import viewer_modules
-from roadproof.frontends.report.drive import COLOURS, draw_drive
-from roadproof.frontends.report.plane import RoadView
+from roadproof.frontends.report.colours import COLOURS
 from roadproof.library.loading import bundled_library
 from roadproof.world.curves import Spiral
 from roadproof.world.drive import Drive, motion_of
@@ -162,9 +164,9 @@ def test_frames_show_what_the_moving_picture_shows() -> None:
 
 def test_other_pictures_say_what_bends_do_to_lengths() -> None:
     file = file_of(ARC)
-    figure = draw_drive(file, LIBRARY)
-    assert "lengths in its lanes differ from those in s by up to 2.8 %" in figure.get_suptitle()
-    assert all(axes.get_aspect() == 1 for axes in figure.axes[:5])
+    texts = " ".join(x.text for x in drawing_of(file, LIBRARY).shapes if isinstance(x, TextShape))
+    assert "lengths in its lanes differ from those in s by up to 2.8 %" in texts
+    assert "m to scale, as seen from the middle" in texts
     svg = draw_animation(file, LIBRARY, "svg").decode()
     assert "lengths differ by up to 2.8 %, 30 m" in svg
     small = miniature(small_scene(file, LIBRARY), "x", "told")

@@ -12,20 +12,9 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from extensions.pages.report.edges import cut_off
 from roadproof.evidence.drive_file import DriveFile, load_drive, read_drive
 from roadproof.evidence.judged import judge_file
-from roadproof.extensions.pages.moving import draw_moving
-from roadproof.extensions.pages.places import nearest, places_of
-from roadproof.extensions.pages.scene import AnimationScene
-from roadproof.extensions.pages.viewer_data import ShownFormula, viewer_data
-from roadproof.extensions.pages.viewer_page import json_in_html, viewer_modules, viewer_page, viewer_style
-from roadproof.extensions.pages.viewer_recorded import recorded_data
-from roadproof.extensions.traffic.evaluate.observed import observe_drive
-from roadproof.extensions.traffic.evaluate.one_trace import sample_drive
-from roadproof.extensions.traffic.report.one_trace import draw_strips
-from roadproof.frontends.report.drive import DANGER, SNAPSHOTS, draw_drive
-from roadproof.frontends.report.drive_data import (
+from roadproof.extensions.pages.drive_data import (
     Danger,
     Strip,
     danger_spans,
@@ -38,7 +27,16 @@ from roadproof.frontends.report.drive_data import (
     vehicles_of,
     window_of,
 )
-from roadproof.frontends.report.figures import fix_layout
+from roadproof.extensions.pages.moving import draw_moving
+from roadproof.extensions.pages.places import nearest, places_of
+from roadproof.extensions.pages.scene import AnimationScene
+from roadproof.extensions.pages.viewer_data import ShownFormula, viewer_data
+from roadproof.extensions.pages.viewer_page import json_in_html, viewer_modules, viewer_page, viewer_style
+from roadproof.extensions.pages.viewer_recorded import recorded_data
+from roadproof.extensions.traffic.evaluate.observed import observe_drive
+from roadproof.extensions.traffic.evaluate.one_trace import sample_drive
+from roadproof.extensions.traffic.report.one_trace import draw_strips
+from roadproof.frontends.report.colours import DANGER
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library, load_library
@@ -142,7 +140,6 @@ def test_a_library_without_such_a_distance_has_none() -> None:
     other = load_library([Source("mine.spec", "def dangerAhead(a, b: vehicle) := s(a) < s(b)")])
     assert distances_of(file_of(), other, "along") == ()
     assert len(distances_of(file_of(), other, "across")) == 1
-    assert draw_drive(file_of(), other).axes
 
 
 def test_danger_begins_where_the_judge_says() -> None:
@@ -182,57 +179,6 @@ def test_names_of_vehicles_are_on_nothing() -> None:
         assert not any(meet(name, box) for box in boxes.values())
         assert not any(meet(name, other) for other in placed[:k])
     assert names["POV2"][0] > 17.0
-
-
-def test_a_vehicle_alone_has_no_gaps() -> None:
-    figure = draw_drive(file_of(None, "F (v_lon(SV) > 3 m/s)", SV=driving(0, 30)), LIBRARY)
-    labels = [one.get_ylabel() for one in figure.axes[SNAPSHOTS:]]
-    assert (labels[0], len(labels)) == ("speed, m/s", 2)
-    assert not any("gap" in label for label in labels)
-
-
-def test_the_figure_says_what_it_shows() -> None:
-    figure = draw_drive(file_of(), LIBRARY)
-    title = figure.get_suptitle().splitlines()
-    assert title[0] == "Scenario 4: deceleration ahead, lane keep, main road"
-    assert title[1].startswith("Main road: you (SV) keep your lane")
-    assert title[2] == f"set base, road main-2, L = main-1; {dangers_of(file_of(), LIBRARY)[0]}"
-    roads, panels = figure.axes[:SNAPSHOTS], figure.axes[SNAPSHOTS:]
-    assert [x.get_text() for x in roads[0].get_yticklabels()] == ["main-1", "main-2"]
-    assert [x.get_text() for x in roads[0].get_legend().get_texts()] == ["main road"]
-    assert any("driving direction" in text.get_text() for one in roads for text in one.texts)
-    assert len({one.get_xlim() for one in roads}) == 1
-    assert [one.get_ylabel() for one in panels[:3]] == ["speed, m/s", "gap along, m", "gap across, m"]
-    assert {one.get_xlim() for one in panels} == {(0.0, 6.0)}
-    [danger] = dangers_of(file_of(), LIBRARY)
-    for one in panels:
-        assert any([*line.get_xdata()] == [danger.begins] * 2 for line in one.get_lines())
-        assert one.get_legend().get_bbox_to_anchor().x0 >= one.bbox.x1  # beside the curves
-    rows = [x.get_text() for x in panels[3].get_yticklabels()]
-    assert rows == ["  " * x.depth + x.name for x in strips(file_of())]
-
-
-def test_nothing_is_cut_off() -> None:
-    three = {"POV2": driving(105, 20), "SV": driving(0, 30), "POV1": driving(60, 20, F(13, 2), F(-1, 2))}
-    long = " and ".join(["scenario_2(SV, POV1, POV2, L)", "aheadOf(SV, POV1)"] * 5)
-    assert cut_off(draw_drive(file_of(None, long, **three), LIBRARY)) == []
-    assert cut_off(draw_drive(file_of(), LIBRARY)) == []
-
-
-def test_a_vehicle_far_beside_the_road_takes_no_room_from_it() -> None:
-    usual = draw_drive(file_of(), LIBRARY)
-    figure = draw_drive(file_of(SV=driving(0, 30), POV=driving(105, 20, F(3), F(6))), LIBRARY)
-    for one in (usual, figure):
-        fix_layout(one)
-    for road, as_usual in zip(figure.axes[:SNAPSHOTS], usual.axes[:SNAPSHOTS], strict=True):
-        assert road.get_position().height == pytest.approx(as_usual.get_position().height, rel=0.05)
-    assert [x.get_text() for x in figure.axes[SNAPSHOTS - 1].texts] == ["SV"]
-
-
-def test_a_formula_is_its_own_title() -> None:
-    file = file_of(None, "F danger(SV, POV)")
-    assert draw_drive(file, LIBRARY).get_suptitle().splitlines()[0] == "F danger(SV, POV)"
-    assert draw_drive(file, LIBRARY, "mine").get_suptitle().splitlines()[0] == "mine"
 
 
 def test_strips_of_one_trace_are_all_there() -> None:
@@ -357,7 +303,7 @@ def test_a_drive_of_one_vehicle_speaks_of_no_distances() -> None:
 
 
 def test_danger_that_no_definition_speaks_of_has_no_row(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roadproof.frontends.report.drive_data.danger_spans", lambda *_: None)
+    monkeypatch.setattr("roadproof.extensions.pages.drive_data.danger_spans", lambda *_: None)
     shown = draw_moving(file_of(), LIBRARY).decode()
     assert "danger between" not in shown
     assert "danger begins" not in shown

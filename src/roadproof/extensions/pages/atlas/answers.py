@@ -22,7 +22,7 @@ from roadproof.extensions.surveys.redundancy import RedundancyData
 from roadproof.frontends.api import drives, ordering, relations
 from roadproof.frontends.api import proofs as proving
 from roadproof.frontends.api.definitions import Definitions
-from roadproof.frontends.api.pictures import Picture
+from roadproof.frontends.report.picture import Picture
 from roadproof.frontends.settings.groups import Readings
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library

@@ -10,9 +10,9 @@ from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.pages.atlas.answers import EVIDENCE, OBJECTIVES, Answers, name_in
 from roadproof.extensions.pages.atlas.notation import text_as_html
+from roadproof.extensions.pages.drive_data import Span, strips_of
 from roadproof.extensions.pages.miniature import miniature, small_scene
 from roadproof.extensions.pages.settings import AtlasSettings
-from roadproof.frontends.report.drive_data import Span, strips_of
 from roadproof.library.specification import Library
 from roadproof.runtime import pool
 from roadproof.verdict import Verdict

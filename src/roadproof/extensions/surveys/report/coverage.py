@@ -3,14 +3,12 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from roadproof.extensions.surveys.coverage import schema
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer, Gap, GapSurvey, GapTraffic, Need
 from roadproof.extensions.traffic.scenario_parts import danger_comes
-from roadproof.frontends.report.drive import draw_drive
-from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.numbers import count, took
+from roadproof.frontends.report.picture import Picture, draw_drive, draws_drives
 from roadproof.frontends.report.sheet import Column, Sheet, as_outline
 from roadproof.library.scenarios import PAIR, Scenario, apply_scenario
 from roadproof.library.specification import Library
@@ -130,7 +128,7 @@ def sheet_of_claims(index: schema.CoverageData) -> Sheet[schema.CoverageClaimDat
     )
 
 
-def draw_gap(answer: ClassAnswer, gap: Gap, library: Library) -> Any:
+def draw_gap(answer: ClassAnswer, gap: Gap, library: Library) -> Picture:
     """Draw a gap, with the times at which each part of the missed scenario is true."""
     file, part = gap.drive.file, answer.part
     specification = library.select(file.set_name, file.options)
@@ -145,10 +143,10 @@ def draw_gap(answer: ClassAnswer, gap: Gap, library: Library) -> Any:
 
 
 def draw_beside(library: Library, job: tuple[ClassAnswer, Gap, Path]) -> None:
-    """Write the picture of a gap beside its file, unless there is a current one."""
+    """Write the picture of a gap beside its file, unless it is there, or no extension draws drives."""
     answer, gap, path = job
-    picture = path.with_suffix(".png")
+    picture = path.with_suffix(".svg")
     if picture.exists() and picture.stat().st_mtime_ns >= path.stat().st_mtime_ns:
         return
-    for kind, content in as_bytes(draw_gap(answer, gap, library)).items():
-        write_atomic(path.with_suffix(f".{kind}"), content)
+    if draws_drives():
+        write_atomic(picture, draw_gap(answer, gap, library).svg)

@@ -13,10 +13,10 @@ from roadproof.extensions.surveys.extremes.extreme import Extreme
 from roadproof.extensions.surveys.extremes.points import PointFinding
 from roadproof.extensions.surveys.report.cells import draw_cell, name_cells
 from roadproof.extensions.surveys.report.overlap_picture import COLOURS
-from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import legend_beside, make_figure
 from roadproof.frontends.report.numbers import took
 from roadproof.frontends.report.overlap import SIGNS
+from roadproof.frontends.report.picture import Picture, drive_pictures, picture
 from roadproof.frontends.report.sheet import Cell, Column, Sheet
 from roadproof.library.words import words_of
 from roadproof.verdict import Verdict
@@ -202,13 +202,12 @@ def _value_of(name: str, entry: Entry) -> Cell:
     return dict(zip(entry[3], entry[2].at, strict=True)).get(name)
 
 
-def draw_all(name: str, explorable: Explorable, explored: ExplorationResult) -> Iterator[tuple[str, Any]]:
+def draw_all(name: str, explorable: Explorable, explored: ExplorationResult) -> Iterator[tuple[str, Picture]]:
     """Yield pictures of an exploration, and of drives at boundaries and extremes, with file names."""
     if explored.findings:
-        yield name, draw_exploration(explorable, explored)
-    for file, finding in _ends_of(name, explored):
-        if finding.drive is not None:
-            yield file, draw_drive(finding.drive.file, explorable.search.specification.library)
+        yield name, picture(draw_exploration(explorable, explored))
+    drives = ((file, finding.drive) for file, finding in _ends_of(name, explored))
+    yield from drive_pictures(drives, explorable.search.specification.library)
 
 
 def _ends_of(name: str, explored: ExplorationResult) -> Iterator[tuple[str, PointFinding]]:

@@ -5,6 +5,7 @@ from typing import Any
 
 from roadproof.frontends.api.ordering import Orders
 from roadproof.frontends.report.figures import make_figure
+from roadproof.frontends.report.picture import Picture, picture
 from roadproof.library.scenarios import Scenario
 from roadproof.library.words import ScenarioWords
 from roadproof.questions.order.deciding import Edge
@@ -12,11 +13,11 @@ from roadproof.questions.order.kinds import Kind
 from roadproof.questions.order.question import OrderView
 
 
-def draw_answer(answer: Orders) -> Any:
+def draw_answer(answer: Orders) -> Picture:
     """Return the diagram of an answer."""
     sets = ", ".join(answer.question.basis.set_names)
     title = f"implications in {sets}; an arrow leads to what is implied"
-    return draw_order(answer.view, title, answer.words)
+    return picture(draw_order(answer.view, title, answer.words))
 
 
 def draw_order(order: OrderView, title: str, words: ScenarioWords) -> Any:

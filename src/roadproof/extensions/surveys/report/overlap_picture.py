@@ -9,6 +9,7 @@ from roadproof.extensions.surveys.report.cells import draw_cell, name_cells
 from roadproof.frontends.api.relations import Overlaps
 from roadproof.frontends.report.figures import hide_frame, legend_beside, make_figure
 from roadproof.frontends.report.overlap import MEANING, SIGNS, axes_of, cells_of
+from roadproof.frontends.report.picture import Picture, picture
 from roadproof.library.words import ScenarioWords, Words
 from roadproof.questions.overlap import PairVerdict
 from roadproof.verdict import Verdict
@@ -22,12 +23,12 @@ COLOURS: Mapping[Verdict, str] = {  # partial: a pair has no other verdicts
 }
 
 
-def draw_answer(answer: Overlaps) -> Any:
+def draw_answer(answer: Overlaps) -> Picture:
     """Return the heat map of an answer."""
     meeting, sets = answer.view.meeting, ",".join(answer.question.basis.set_names)
     how = f"lanes {meeting.lanes}, roles {meeting.roles}, start {meeting.start}"
     title = f"Which scenarios hold together: set {sets}; {how}"
-    return draw_overlap(answer.pairs, title, answer.across, answer.words)
+    return picture(draw_overlap(answer.pairs, title, answer.across, answer.words))
 
 
 def draw_overlap(verdicts: Sequence[PairVerdict], title: str, across: bool, words: ScenarioWords) -> Any:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import inf
-from typing import assert_never
+from typing import Any, TypeAlias, assert_never
 
 import numpy as np
 
@@ -17,11 +17,12 @@ from roadproof.errors import InputError, UsageError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, Interval
 from roadproof.semantics.exact.judging import interval_seconds
-from roadproof.semantics.exact.samples import Array, sample_margin
+from roadproof.semantics.exact.samples import sample_margin
 from roadproof.semantics.exact.signals import DriveSignals, TermPieces
 from roadproof.world.drive import Drive
 
 MOST_SAMPLES = 1_000_000
+Array: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,7 @@ class _Sampler:
             case f.Truth(value):
                 return np.full(self.count, inf if value else -inf)
             case f.Compare():
-                return sample_margin(formula, self.courses, self.dt, self.count)
+                return np.array(sample_margin(formula, self.courses, self.dt, self.count))
             case f.Not(body):
                 return -self.visit(body)
             case f.And(parts):

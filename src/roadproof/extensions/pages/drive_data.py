@@ -211,7 +211,7 @@ def _margins(
     if nearer is None:
         return None
     grain = times[1] if len(times) > 1 else GRAIN
-    return list(sample_margin(nearer, TermPieces(DriveSignals(file.drive)), grain, len(times)))
+    return sample_margin(nearer, TermPieces(DriveSignals(file.drive)), grain, len(times))
 
 
 def too_near(home: Specification, direction: Direction, low: str, high: str) -> Query:
@@ -266,17 +266,34 @@ Box: TypeAlias = tuple[float, float, float, float]
 """Left, right, bottom, top."""
 
 
-def place_names(boxes: Mapping[str, Box], sizes: Mapping[str, tuple[float, float]]) -> dict[str, Box]:
-    """A place of its size for each vehicle's name, beside its box: in no box and on no other name.
+def place_names(
+    boxes: Mapping[str, Box], sizes: Mapping[str, tuple[float, float]], within: Box | None = None
+) -> dict[str, Box]:
+    """Return a place of its size for each vehicle's name, beside its box: in no box, on no other name.
 
-    Ahead of the box is tried first, then behind it, above and below; where all are taken it is ahead.
+    Ahead of the box is tried first, then behind it, above and below, then ahead of and behind the other boxes
+    and names. Places ``within`` a box are preferred.
     """
     placed: dict[str, Box] = {}
     for name in sorted(boxes, key=lambda x: -boxes[x][1]):
         taken = [*boxes.values(), *placed.values()]
-        free = (x for x in _places(boxes[name], sizes[name]) if not any(_meet(x, y) for y in taken))
-        placed[name] = next(free, next(_places(boxes[name], sizes[name])))
+        every = [*_places(boxes[name], sizes[name]), *_places_beside(boxes[name], sizes[name], taken)]
+        free = [x for x in every if not any(_meet(x, y) for y in taken)]
+        inside = (x for x in free if within is None or _is_within(x, within))
+        placed[name] = next(inside, free[0])  # ahead of all others is free
     return placed
+
+
+def _is_within(one: Box, other: Box) -> bool:
+    return other[0] <= one[0] and one[1] <= other[1] and other[2] <= one[2] and one[3] <= other[3]
+
+
+def _places_beside(box: Box, size: tuple[float, float], taken: Sequence[Box]) -> Iterator[Box]:
+    """Yield the places of a name that is level with its box, ahead of and behind each of the others."""
+    low = (box[2] + box[3] - size[1]) / 2
+    room = 0.15 * size[0]
+    for begin in (*(x[1] + room for x in taken), *(x[0] - room - size[0] for x in taken)):
+        yield begin, begin + size[0], low, low + size[1]
 
 
 def _places(box: Box, size: tuple[float, float]) -> Iterator[Box]:

@@ -10,7 +10,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TypeAlias
 
-from roadproof.frontends.report.drive_data import Box, Span, road_in
+from roadproof.extensions.pages.drive_data import Box, Span, road_in
 from roadproof.runtime.records import dataclass
 from roadproof.world.curves import Pose
 from roadproof.world.reference_line import ReferenceLine
