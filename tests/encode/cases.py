@@ -39,7 +39,14 @@ bounded = st.builds(interval, st.integers(0, 2), st.integers(0, 3))
 intervals = st.one_of(bounded, st.builds(interval, st.integers(0, 2), st.none()))
 
 
-def formulas(windows=intervals, leaves=8):
+def _looking_back(inner, windows):
+    yield st.builds(f.Since, inner, windows, inner)
+    yield st.builds(f.once, windows, inner)
+    yield st.builds(f.historically, windows, inner)
+
+
+def formulas(windows=intervals, leaves=8, past=True):
+    """Formulas with every operator; without ``past``, with those that look ahead."""
     return st.recursive(
         atoms | st.builds(f.Truth, st.booleans()),
         lambda inner: st.one_of(
@@ -49,9 +56,7 @@ def formulas(windows=intervals, leaves=8):
             st.builds(f.Eventually, windows, inner),
             st.builds(f.Always, windows, inner),
             st.builds(f.Until, inner, windows, inner),
-            st.builds(f.Since, inner, windows, inner),
-            st.builds(f.once, windows, inner),
-            st.builds(f.historically, windows, inner),
+            *(_looking_back(inner, windows) if past else ()),
             st.builds(lambda a: f.Application("part", (), a), inner),
         ),
         max_leaves=leaves,

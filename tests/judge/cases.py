@@ -22,8 +22,14 @@ def intervals(draw):
     return f.Interval(t.number(low), None if high is None else t.number(high))
 
 
-def formulas(atoms, leaves=6):
-    """Formulas over ``atoms`` with every operator."""
+def _looking_back(inner):
+    yield st.builds(f.Since, inner, intervals(), inner)
+    yield st.builds(f.once, intervals(), inner)
+    yield st.builds(f.historically, intervals(), inner)
+
+
+def formulas(atoms, leaves=6, past=True):
+    """Formulas over ``atoms`` with every operator; without ``past``, with those that look ahead."""
     return st.recursive(
         atoms,
         lambda inner: st.one_of(
@@ -33,9 +39,7 @@ def formulas(atoms, leaves=6):
             st.builds(f.Eventually, intervals(), inner),
             st.builds(f.Always, intervals(), inner),
             st.builds(f.Until, inner, intervals(), inner),
-            st.builds(f.Since, inner, intervals(), inner),
-            st.builds(f.once, intervals(), inner),
-            st.builds(f.historically, intervals(), inner),
+            *(_looking_back(inner) if past else ()),
         ),
         max_leaves=leaves,
     )

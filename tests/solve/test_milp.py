@@ -190,7 +190,7 @@ def groups():
 
     @seed(7)
     @settings(max_examples=GROUPS * 3, database=None, phases=[Phase.generate], deadline=None)
-    @given(cases.traces, st.lists(cases.formulas(leaves=5), min_size=EACH, max_size=EACH))
+    @given(cases.traces, st.lists(cases.formulas(leaves=5, past=False), min_size=EACH, max_size=EACH))
     def collect(trace, formulas):
         made.append((trace, formulas))
 

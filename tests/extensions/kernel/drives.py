@@ -65,7 +65,7 @@ def quantified(domains, atoms):
         lambda kind, where, body: kind("l", where, body),
         st.sampled_from([f.Some, f.Every]),
         st.sampled_from(domains),
-        formulas(st.one_of(comparisons, atoms, atoms), leaves=3),
+        formulas(st.one_of(comparisons, atoms, atoms), leaves=3, past=False),
     )
 
 
@@ -73,7 +73,7 @@ of_road = st.one_of(
     quantified([f.Domain("zone", "main"), f.Domain("zone", "merge"), f.Domain("lanelets", "L")], inside),
     quantified([f.Domain("lanes"), f.Domain("adjacent", "L")], within),
 )
-asked = formulas(st.one_of(comparisons, of_road), leaves=4)
+asked = formulas(st.one_of(comparisons, of_road), leaves=4, past=False)
 
 
 # Signals of a specification, of vehicles and of none, and kinds, on drives with jerk.
@@ -102,7 +102,7 @@ own_comparisons = st.one_of(
     st.builds(is_kind, st.sampled_from("AB"), st.sampled_from(KINDS), st.booleans()),
     jerk_comparisons,
 )
-own_asked = formulas(own_comparisons, leaves=4)
+own_asked = formulas(own_comparisons, leaves=4, past=False)
 
 
 def cases(count, asked=asked, drives=drives):

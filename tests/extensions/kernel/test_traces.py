@@ -96,7 +96,7 @@ def cases(count, repeating):
         suppress_health_check=list(HealthCheck),
     )
     @given(
-        formulas(comparisons, leaves=5),
+        formulas(comparisons, leaves=5, past=False),
         traces(repeating),
         st.lists(traces(repeating), min_size=4, max_size=4),
     )
