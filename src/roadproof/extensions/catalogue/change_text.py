@@ -12,15 +12,17 @@ from roadproof.world.signals import SIGNALS, SignalName
 from roadproof.world.units import SI, UNITS
 
 Values: TypeAlias = Mapping[t.Signal | t.Size, Fraction]
-_WORDS: Mapping[SignalName, tuple[str, str]] = {
-    "s": ("further ahead", "further back"),
-    "d": ("further left", "further right"),
-    "v_lon": ("faster", "slower"),
-    "v_lat": ("faster to the left", "faster to the right"),
-    "a_lon": ("more acceleration", "less acceleration"),
-    "a_lat": ("more acceleration to the left", "more acceleration to the right"),
+_ALONG: Mapping[str, tuple[str, str]] = {
+    "m": ("further ahead", "further back"),
+    "m/s": ("faster", "slower"),
+    "m/s^2": ("more acceleration", "less acceleration"),
 }
-"""What a greater and a smaller value of a signal is called."""
+_ACROSS: Mapping[str, tuple[str, str]] = {
+    "m": ("further left", "further right"),
+    "m/s": ("faster to the left", "faster to the right"),
+    "m/s^2": ("more acceleration to the left", "more acceleration to the right"),
+}
+"""What a greater and a smaller value of a signal is called, by its unit."""
 
 
 def change_text(comparison: f.Compare, op: f.Comparison, values: Values) -> str:
@@ -35,7 +37,8 @@ def change_text(comparison: f.Compare, op: f.Comparison, values: Values) -> str:
     lack = _difference(comparison, values)
     for signal in sorted(_signals(values), key=lambda x: (x.vehicle == "SV", x.vehicle, x.name)):
         slope = _difference(comparison, {**values, signal: values[signal] + 1}) - lack
-        if abs(slope) != 1 or signal.name not in _WORDS:
+        words = (_ACROSS if _is_across(signal.name) else _ALONG).get(SIGNALS[signal.name].unit)
+        if abs(slope) != 1 or words is None:
             continue
         needed = -lack / slope
         if _difference(comparison, {**values, signal: values[signal] + needed}) != 0:
@@ -43,10 +46,14 @@ def change_text(comparison: f.Compare, op: f.Comparison, values: Values) -> str:
         rises = needed > 0 if needed else (op in (">", ">=")) == (slope > 0)
         unit = SI[UNITS[SIGNALS[signal.name].unit][1]]
         amount = f"at least {_rounded(abs(needed))} {unit}" if needed else "a little"
-        more, less = _WORDS[signal.name]
-        verb = "need" if signal.name in ("a_lon", "a_lat") else "have to be"
+        more, less = words
+        verb = "need" if more.startswith("more") else "have to be"
         return f"{signal.vehicle} would {verb} {amount} {more if rises else less} then"
     return ""
+
+
+def _is_across(name: SignalName) -> bool:
+    return name == "d" or name.endswith("lat")
 
 
 def _signals(values: Values) -> list[t.Signal]:
