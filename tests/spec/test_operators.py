@@ -81,6 +81,8 @@ MISTAKES = {
     "O (let L = lane of SV at start: atLane(SV,L))": "outside of temporal operators",
     f"rise({P})": "takes a formula and a time, but got 1 argument",
     f"fall({P}, 1 m)": "an interval bound is a time",
+    f"rise({P}, -1 s)": "the interval is empty: low=0 is above high=-1",
+    f"fall({P}, minSafe - 1 s)": "an interval bound may never be negative",
 }
 
 
@@ -109,6 +111,7 @@ def test_proofs_refuse_to_look_back() -> None:
     [verdict] = answer.as_data()["verdicts"]  # type: ignore[index,call-overload]
     assert answer.verdict == "UNKNOWN"
     assert verdict["doubt"]["cause"] == Cause.PAST
+    assert verdict["doubt"]["tried"] == ["drives"]
 
 
 def test_a_drive_on_which_something_was_so_before() -> None:

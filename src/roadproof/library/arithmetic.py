@@ -252,10 +252,10 @@ def temporal(op: TemporalOperator, left: Formula, interval: f.Interval, right: F
             assert_never(op)
 
 
-def edge(name: str, body: Formula, time: t.Term) -> Formula:
+def edge(name: str, body: Formula, time: t.Term, at: Position) -> Formula:
     """Return ``rise(body, time)``: it holds, and did not at some instant of the last ``time``.
 
-    Any other ``name`` is ``fall``: the same of its negation.
+    Any other ``name`` is ``fall``: the same of its negation. Raises ``TextError`` for a negative time.
     """
     now, before = (body, f.negation(body)) if name == "rise" else (f.negation(body), body)
-    return f.conjunction(now, f.once(f.Interval(f.ZERO, time), before))
+    return f.conjunction(now, f.once(interval(f.ZERO, time, at), before))

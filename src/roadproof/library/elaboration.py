@@ -386,7 +386,7 @@ class Elaborator:
         if name in ("rise", "fall"):
             mistakes.refuse_arity_of_edge(name, call)
             time = self._bound(call.arguments[1], scope)
-            return arithmetic.edge(name, self.formula(call.arguments[0], scope), time)
+            return arithmetic.edge(name, self.formula(call.arguments[0], scope), time, call.at)
         mistakes.refuse_arity(name, 2 if name == "occ" else 1, call)
         first = call.arguments[0]
         if name == "occ":

@@ -136,10 +136,8 @@ class UnknownReport:
             return self.detail
         else:
             assumed = _CLAUSES[self.cause] + (f" ({self.detail})" if self.detail else "")
-        tried = ", ".join(_ATTEMPTS[x] for x in self.tried)
-        message = (
-            f"{assumed}; tried: {tried}; more work {'may help' if self.effort_helps else 'does not help'}"
-        )
+        tried = f"tried: {', '.join(_ATTEMPTS[x] for x in self.tried)}; " if self.tried else ""
+        message = f"{assumed}; {tried}more work {'may help' if self.effort_helps else 'does not help'}"
         return f"{message}, and {NO_REMEDY}" if self.remedy is None else f"{message}: {self.remedy.text}"
 
 
@@ -147,8 +145,8 @@ def unknown_report(
     query: Query, assumed: Sequence[str], stop: StopPoint, effort: Effort, seek_drive: bool, detail: str = ""
 ) -> UnknownReport:
     """Return why ``query`` ends UNKNOWN under ``assumed`` when the search stopped at ``stop``."""
-    moving = assumes_motion(assumed)
-    done = {"proof": True, "traces": not moving, "drives": seek_drive}
+    begun = stop is not StopPoint.PAST
+    done = {"proof": begun, "traces": begun and not assumes_motion(assumed), "drives": seek_drive}
     tried = tuple(x for x in _ATTEMPTS if done[x])
     cause = _cause(query.formula, assumed, stop, effort.units)
     has_detail = cause in (Cause.CLOCK, Cause.PROCESS, Cause.SOLVER, Cause.CERTIFICATE)

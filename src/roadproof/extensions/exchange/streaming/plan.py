@@ -351,14 +351,14 @@ class _Planner:
         if self.look(left)[1] or self.look(right)[1]:
             raise InputError(
                 "the formula looks back (O, H, S) at a part with F, G or U without an upper bound, which a "
-                "monitor in C cannot remember: give that part a bound"
+                "streaming monitor cannot remember: give that part a bound"
             )
         low, high = interval_steps(interval, self.dt)
         farthest = max(low, high or 0)
         if farthest > MOST_DELAY:
             raise InputError(
-                f"the formula looks back {farthest} samples at a step of {float(self.dt):g} s; a monitor in "
-                f"C looks back by at most {MOST_DELAY}: shorten the intervals or take a longer --dt"
+                f"the formula looks back {farthest} samples at a step of {float(self.dt):g} s; a streaming "
+                f"monitor looks back by at most {MOST_DELAY}: shorten the intervals or take a longer --dt"
             )
         one, other = (self._at(self.place(x, opposite, delay), delay + low) for x in (left, right))
         width = None if high is None else high - low
