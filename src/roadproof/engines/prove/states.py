@@ -301,16 +301,9 @@ def is_propositional(formula: Formula) -> bool:
             return True
         case f.Not() | f.And() | f.Or():
             return all(map(is_propositional, f.children(formula)))
-        case (
-            f.Compare()
-            | f.Occupies()
-            | f.Some()
-            | f.Every()
-            | f.Until()
-            | f.Since()
-            | f.Eventually()
-            | f.Always()
-        ):
+        case f.Compare() | f.Occupies() | f.Some() | f.Every():
+            return False
+        case f.Until() | f.Since() | f.Eventually() | f.Always():
             return False
 
 
@@ -332,14 +325,7 @@ def deciding_atoms(formula: Formula, value: bool, truths: Mapping[str, bool]) ->
             if isinstance(formula, f.And) != value:
                 return min(enough, key=len, default=None)
             return {k: v for x in enough for k, v in x.items()} if len(enough) == len(explanations) else None
-        case (
-            f.Compare()
-            | f.Occupies()
-            | f.Some()
-            | f.Every()
-            | f.Until()
-            | f.Since()
-            | f.Eventually()
-            | f.Always()
-        ):
+        case f.Compare() | f.Occupies() | f.Some() | f.Every():
+            raise ValueError(f"not plain: {type(formula).__name__}")
+        case f.Until() | f.Since() | f.Eventually() | f.Always():
             raise ValueError(f"not plain: {type(formula).__name__}")

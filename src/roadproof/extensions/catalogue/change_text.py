@@ -61,34 +61,14 @@ def _signals(values: Values) -> list[t.Signal]:
 
 
 def _difference(comparison: f.Compare, values: Values) -> Fraction:
-    return _value(comparison.left, values) - _value(comparison.right, values)
+    """Return by how much the left side is above the right one."""
 
+    def put_in(leaf: t.Leaf) -> Term:
+        return t.number(values[leaf]) if isinstance(leaf, t.Signal | t.Size) else leaf
 
-def _value(term: Term, values: Values) -> Fraction:
-    """Return the value of a term whose parameters are numbers; an inverse has none that counts here."""
-    parts = [_value(x, values) for x in t.children(term)]
-    match term:
-        case t.Number(value, _):
-            return value
-        case t.Signal() | t.Size():
-            return values[term]
-        case t.Sum():
-            return sum(parts, Fraction(0))
-        case t.Product():
-            product = Fraction(1)
-            for x in parts:
-                product *= x
-            return product
-        case t.Power(_, exponent):
-            return Fraction(parts[0] ** exponent)
-        case t.Quotient():
-            return parts[0] / parts[1]
-        case t.Maximum():
-            return max(parts)
-        case t.Minimum():
-            return min(parts)
-        case t.Inverse() | t.Parameter() | t.Variable() | t.CustomSignal():
-            raise AssertionError("leaves are numbers, signals and sizes; inverses are never to blame")
+    value = t.constant_value(t.replace_leaves(t.subtract(comparison.left, comparison.right), put_in))
+    assert value is not None  # the leaves are numbers, and no inverse is ever to blame
+    return value
 
 
 def _rounded(amount: Fraction) -> str:

@@ -6,10 +6,10 @@ single instant p is the cuts before and after p: open and closed ends need no fu
 """
 
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from roadproof.semantics.exact.algebraic import Point, decimal, moved
 
@@ -28,6 +28,7 @@ class Span(NamedTuple):
     end: Cut | None
 
 
+_Shift: TypeAlias = Callable[[Fraction, Fraction | None, Iterable[Span]], list[Span]]
 START = Cut(Fraction(0), False)
 
 
@@ -126,31 +127,23 @@ def always(low: Fraction, high: Fraction | None, body: TruthSet) -> TruthSet:
 
 
 def until(left: TruthSet, low: Fraction, high: Fraction | None, right: TruthSet) -> TruthSet:
-    """Return U_[low, high] of semantics §1: right at T+t for some t in [low, high], left on T + [low, t).
-
-    At T it is the until that starts with 0, seen from T + low. That one holds where right does, and, on each
-    maximal interval ⟨p, q⟩ of left, where right comes within high - low at a point of [p, q]: it may come
-    at q itself even if left fails there.
-    """
-    length = None if high is None else high - low
-    reached = list(right.spans())
-    for span in left.spans():
-        begin, end = span
-        reach = Span(Cut(begin.point, False), None if end is None else Cut(end.point, True))
-        targets = [met for other in right.spans() if (met := _meet(other, reach)) is not None]
-        for reaching in _shifted_back(Fraction(0), length, targets):
-            met = _meet(reaching, span)
-            if met is not None:
-                reached.append(met)
-    return _overlapped(_shifted_back(low, low, _overlapped(reached, 1).spans()), 1)
+    """Return U_[low, high] of semantics §1: right at T+t for some t in [low, high], left on T + [low, t)."""
+    return _while_left(left, low, high, right, _shifted_back)
 
 
 def since(left: TruthSet, low: Fraction, high: Fraction | None, right: TruthSet) -> TruthSet:
-    """Return S_[low, high], the mirror image of ``until``: nothing is before time 0.
+    """Return S_[low, high], the mirror image of ``until``: nothing is before time 0."""
+    return _while_left(left, low, high, right, _shifted_ahead)
 
-    At T it is the since that starts with 0, seen from T - low. That one holds where right does, and, on each
-    maximal interval ⟨p, q⟩ of left, where right was true within high - low at a point of [p, q]: that may be
-    p itself even if left fails there.
+
+def _while_left(
+    left: TruthSet, low: Fraction, high: Fraction | None, right: TruthSet, shifted: _Shift
+) -> TruthSet:
+    """Return the until (or since) whose windows look to where ``shifted`` moves spans from.
+
+    At T it is the one that starts with 0, seen from T + low (T - low). That one holds where right does, and,
+    on each maximal interval ⟨p, q⟩ of left, where right is true within high - low at a point of [p, q]: that
+    may be the far end itself, even if left fails there.
     """
     length = None if high is None else high - low
     reached = list(right.spans())
@@ -158,11 +151,11 @@ def since(left: TruthSet, low: Fraction, high: Fraction | None, right: TruthSet)
         begin, end = span
         reach = Span(Cut(begin.point, False), None if end is None else Cut(end.point, True))
         targets = [met for other in right.spans() if (met := _meet(other, reach)) is not None]
-        for reaching in _shifted_ahead(Fraction(0), length, targets):
+        for reaching in shifted(Fraction(0), length, targets):
             met = _meet(reaching, span)
             if met is not None:
                 reached.append(met)
-    return _overlapped(_shifted_ahead(low, low, _overlapped(reached, 1).spans()), 1)
+    return _overlapped(shifted(low, low, _overlapped(reached, 1).spans()), 1)
 
 
 def _shifted_ahead(low: Fraction, high: Fraction | None, spans: Iterable[Span]) -> list[Span]:

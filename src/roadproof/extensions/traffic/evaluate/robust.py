@@ -170,18 +170,16 @@ def _until(left: Array, low: int, high: int | None, right: Array) -> Array:
 def _since(left: Array, low: int, high: int | None, right: Array) -> Array:
     """max over j in [low, high], j <= k, of min(right[k-j], left[k-low .. k-j+1]); else -inf."""
     length = min(len(left), len(right))
-    best = np.full(length, -inf)
-    for j in range(low, length if high is None else min(high + 1, length)):
-        best[j:] = np.maximum(best[j:], np.minimum(right[: length - j], _least(left, low, j, length)))
-    return best
-
-
-def _least(left: Array, low: int, j: int, length: int) -> Array:
-    """min of left[k-low .. k-j+1] for each k from j to length - 1; inf where that is empty."""
-    least = np.full(length - j, inf)
-    for i in range(low, j):
-        least = np.minimum(least, left[j - i : length - i])
-    return least
+    best, left_least = right[:length].copy(), np.full(length, inf)
+    if high is None:
+        for k in range(1, length):
+            best[k] = max(best[k], min(left[k], best[k - 1]))
+    for j in range(1, 0 if high is None else min(high - low + 1, length)):
+        left_least[j:] = np.minimum(left_least[j:], left[1 : length - j + 1])
+        best[j:] = np.maximum(best[j:], np.minimum(right[: length - j], left_least[j:]))
+    seen = np.full(length, -inf)
+    seen[low:] = best[: max(0, length - low)]
+    return seen
 
 
 def clamped_to_verdict(margin: float, holds: bool) -> float:
