@@ -142,7 +142,9 @@ def test_temporal_operators_and_inverses_are_refused_between_samples():
         found = signal_of(formula, alone(v_lon=2))
         assert (found.exact, found.pieces, reason in found.sampled) == (None, (), True)
         assert reason in str(found)
-        found.at(HALF)
+        assert found.at(HALF) == found.at(0.5) == found.at("500 ms")
+        with pytest.raises(InputError, match="time=soon: this is no value"):
+            found.at("soon")
         with pytest.raises(UsageError, match="between two samples"):
             found.at(SEVENTH)
         with pytest.raises(UsageError, match="outside the trace"):

@@ -14,6 +14,7 @@ from roadproof.errors import UsageError
 from roadproof.extensions.traffic.answers.monitor import Truth
 from roadproof.extensions.traffic.evaluate.robust import clamped_to_verdict, robustness
 from roadproof.frontends.api.table import Row, Table
+from roadproof.library.bind import Number, exact
 from roadproof.logic.formula import Formula
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.judging import Judgement
@@ -64,12 +65,13 @@ class RobustnessSignal(Table):
         """The pieces of the exact function; none where there is no such function, or it is infinite."""
         return () if self.exact is None or isinstance(self.exact, bool) else self.exact
 
-    def at(self, time: Fraction) -> tuple[float, float]:
-        """Return bounds of the robustness at a time (s).
+    def at(self, when: Number) -> tuple[float, float]:
+        """Return bounds of the robustness at a time, in s or as text with a unit.
 
         Raises ``UsageError`` for a time between samples where the function is not known exactly, and for one
-        outside the trace.
+        outside the trace; ``InputError`` for what is no time.
         """
+        time = exact("time", when, "s")
         if time < 0 or (self.exact is None and time > (len(self) - 1) * self.dt):
             raise UsageError(f"time={float(time):g} s is outside the trace, which begins with 0 s")
         if isinstance(self.exact, bool):
