@@ -72,19 +72,19 @@ def decide_claims(
         raise UsageError(f"--shard {shard} requires --out, the folder that the runs share")
     work = question.work
     store = Store(folder, question.kind, work, reads_known=not fresh and not is_off())
-    store.open(question, say)
-    run = _Run(question, store, each or _ignore, say, progress, what)
-    is_ours = shard_filter(shard, [batch.name for batch in question.batches({})])
-    batches = run.open_batches()
-    line = origins_in_words([*run.origins.values()], len(run.known) + len(batches))
-    if line and say is not None:
-        say(line)
-    while batches:
-        ours = [x for x in batches if is_ours(x.name)]
-        if not ours:
-            raise SharedError(_shard_message(shard, run.known, len(batches), what))
-        run.ask(ours, executor, progress, what)
+    with store.opened(question, say):
+        run = _Run(question, store, each or _ignore, say, progress, what)
+        is_ours = shard_filter(shard, [batch.name for batch in question.batches({})])
         batches = run.open_batches()
+        line = origins_in_words([*run.origins.values()], len(run.known) + len(batches))
+        if line and say is not None:
+            say(line)
+        while batches:
+            ours = [x for x in batches if is_ours(x.name)]
+            if not ours:
+                raise SharedError(_shard_message(shard, run.known, len(batches), what))
+            run.ask(ours, executor, progress, what)
+            batches = run.open_batches()
     store.require_folder()
     if not isinstance(question, Growing):
         store.leave_only(run.known, say)

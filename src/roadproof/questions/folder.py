@@ -2,17 +2,20 @@
 
 import json
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.heading import library_of
-from roadproof.evidence.specifications import write_specifications
+from roadproof.evidence.specifications import specification_names, write_specifications
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
+from roadproof.library.specification import Library
 from roadproof.questions.data import basis_data, question_data, read_question
 from roadproof.questions.question import QUESTION, Growing, Question, Replacing
-from roadproof.runtime.files import make_folder, write_json
+from roadproof.runtime.files import make_folder, write_atomic, write_json
 from roadproof.runtime.pool import Say
+from roadproof.runtime.records import dataclass
 
 
 def open_folder(
@@ -37,6 +40,33 @@ def open_folder(
             raise _other(folder)
         remove_answers()
         write_json(head, data)
+
+
+@dataclass(frozen=True)
+class FormerFolder:
+    """A folder before a run: the names in it, None where it was not there, and its question."""
+
+    names: frozenset[str] | None
+    question: bytes | None
+
+    @classmethod
+    def of(cls, folder: Path) -> Self:
+        """Return what is there."""
+        head = folder / QUESTION
+        names = frozenset(x.name for x in folder.iterdir()) if folder.is_dir() else None
+        return cls(names, head.read_bytes() if head.is_file() else None)
+
+    def restore(self, folder: Path, library: Library) -> None:
+        """Write the question back, or remove what ``open_folder`` has begun; answers stay with theirs."""
+        head = folder / QUESTION
+        if self.question is not None:
+            write_atomic(head, self.question)
+        elif not [x for x in folder.glob("*.json") if x != head]:
+            for name in {QUESTION, *specification_names(library)} - (self.names or frozenset()):
+                (folder / name).unlink(missing_ok=True)
+            if self.names is None:
+                with suppress(OSError):
+                    folder.rmdir()
 
 
 def _grown(folder: Path, question: Any, say: Say | None) -> Any:

@@ -9,12 +9,13 @@ it, and its key covers the claims before it, too: their drives and proofs might 
 from __future__ import annotations
 
 import json
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, assert_never
 
-from roadproof.errors import InputError
+from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answer import ClaimAnswer, RefutingTrace
 from roadproof.evidence.answer_codec import answer_data, is_answer, read_answer
 from roadproof.evidence.answer_files import UndecidedFile
@@ -58,6 +59,22 @@ class Store:
             from roadproof.questions.folder import open_folder  # here: most answers are written nowhere
 
             open_folder(self.folder, question, lambda: self.leave_only({}), say)
+
+    @contextmanager
+    def opened(self, question: Question[Any], say: Say | None = None) -> Iterator[None]:
+        """Open the folder for a run; a mistake of the user leaves the question that was there before."""
+        if self.folder is None:
+            yield
+            return
+        from roadproof.questions.folder import FormerFolder  # here: as in ``open``
+
+        former = FormerFolder.of(self.folder)
+        self.open(question, say)
+        try:
+            yield
+        except (UsageError, InputError):
+            former.restore(self.folder, question.basis.library)
+            raise
 
     def _same_work(self, claim: Claim) -> str:
         return digest(self.work, ANSWERS, program_digest(), *foreign_code(self.kind, claim))

@@ -145,8 +145,8 @@ def unknown_report(
     query: Query, assumed: Sequence[str], stop: StopPoint, effort: Effort, seek_drive: bool, detail: str = ""
 ) -> UnknownReport:
     """Return why ``query`` ends UNKNOWN under ``assumed`` when the search stopped at ``stop``."""
-    begun = stop is not StopPoint.PAST
-    done = {"proof": begun, "traces": begun and not assumes_motion(assumed), "drives": seek_drive}
+    readable = stop is not StopPoint.PAST
+    done = {"proof": readable, "traces": readable and not assumes_motion(assumed), "drives": seek_drive}
     tried = tuple(x for x in _ATTEMPTS if done[x])
     cause = _cause(query.formula, assumed, stop, effort.units)
     has_detail = cause in (Cause.CLOCK, Cause.PROCESS, Cause.SOLVER, Cause.CERTIFICATE)
