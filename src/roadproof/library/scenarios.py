@@ -27,6 +27,7 @@ from roadproof.logic.syntax import Definition, TitleDeclaration
 from roadproof.world.road import Zone
 
 MIN_SAFE, MIN_DANGER = "minSafe", "minDanger"
+DANGER_ARISES = "dangerArises"
 
 ZONES: dict[Zone, str] = {"main": "onMainRoad", "merge": "inMergeZone", "depart": "inDepartZone"}
 _SCENARIO = re.compile(r"scenario_(\d{1,6})")

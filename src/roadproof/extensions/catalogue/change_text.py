@@ -5,6 +5,7 @@ from fractions import Fraction
 from math import ceil, log10
 from typing import TypeAlias
 
+from roadproof.library.scenario_names import SUBJECT
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.terms import Term
@@ -35,7 +36,7 @@ def change_text(comparison: f.Compare, op: f.Comparison, values: Values) -> str:
     if not all(isinstance(x, t.Number | t.Signal | t.Size) for x in leaves):
         return ""
     lack = _difference(comparison, values)
-    for signal in sorted(_signals(values), key=lambda x: (x.vehicle == "SV", x.vehicle, x.name)):
+    for signal in sorted(_signals(values), key=lambda x: (x.vehicle == SUBJECT, x.vehicle, x.name)):
         slope = _difference(comparison, {**values, signal: values[signal] + 1}) - lack
         words = (_ACROSS if _is_across(signal.name) else _ALONG).get(SIGNALS[signal.name].unit)
         if abs(slope) != 1 or words is None:

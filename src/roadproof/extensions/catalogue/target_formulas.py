@@ -28,7 +28,7 @@ from roadproof.world.road import Road
 
 NO_CLASS = "no class"
 """The name for a test that is in none of the classes, though scenarios hold."""
-ENDANGERED = "dangerArises"
+ENDANGERED = scenarios.DANGER_ARISES
 """The target in which vehicles are safe and come into danger, in any scenario or none."""
 GAP = "gap"
 """The target of danger that no scenario covers, for any lane and in any roles."""
