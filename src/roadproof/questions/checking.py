@@ -4,7 +4,7 @@ What is in a folder is read from the folder: links are refused, and so is a file
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -41,7 +41,9 @@ from roadproof.questions.question import (
     walk_batch,
     work_of,
 )
+from roadproof.questions.store import Store
 from roadproof.reasons import NO_REASON, ReasonKind
+from roadproof.runtime.archives import is_off
 from roadproof.runtime.records import dataclass
 
 _ANY_VERSION = SCHEMA.rpartition("/")[0] + "/"
@@ -55,7 +57,8 @@ class QuestionFolder:
     ``problems``: files that answer no claim, or not their own. ``others``: files that are no answers, such as
     tables and pictures. ``specs``: the specification files beside the answers. ``missing``: the names of
     claims without a file; ``refused``: of those whose file cannot be read, or is not theirs.
-    ``is_other_library``: whether the question was asked with other definitions of the library.
+    ``is_other_library``: whether the question was asked with other definitions of the library. ``stores``:
+    where an earlier run may have left the answer about a trace, by the name of its claim.
     """
 
     folder: Path
@@ -67,6 +70,7 @@ class QuestionFolder:
     missing: frozenset[str] = frozenset()
     refused: frozenset[str] = frozenset()
     is_other_library: bool = False
+    stores: Mapping[str, Store] = field(default_factory=dict)
 
     @property
     def files(self) -> dict[Path, str]:
@@ -109,11 +113,17 @@ class QuestionFolder:
             )
             yield replace(finding, verdict="UNKNOWN")
 
-    def finding(self, name: str, finding: Finding) -> Finding:
-        """Return what was found of a file, in the words of the question; a trace is judged again."""
+    def finding(self, name: str, finding: Finding, takes_over: bool = False) -> Finding:
+        """Return what was found of a file, in the words of the question; a trace is judged again.
+
+        ``takes_over``: not where this program has judged the trace before, and kept this very answer.
+        """
         answer = self.answers[name]
         if isinstance(answer.claim.mode, On) and isinstance(answer.evidence, JudgedTrace):
-            same = _is_so(answer.claim.mode.judge, answer.evidence.shows)
+            store = self.stores[name]
+            same = takes_over and store.has_given(answer)
+            if not same and (same := _is_so(answer.claim.mode.judge, answer.evidence.shows)):
+                store.note(answer)
             outcome = Acceptance.ACCEPTED if same else Acceptance.REJECTED
             reason = NO_REASON if same else ReasonKind.NOT_SHOWN()
             finding = replace(finding, kind="test", outcome=outcome, reason=reason)
@@ -169,6 +179,8 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     problems: list[Finding] = []
     missing: set[str] = set()
     refused: set[str] = set()
+    stores: dict[str, Store] = {}
+    usual = Store(None, question.kind, question.work, reads_known=not is_off())
 
     def find(batch: QuestionBatch, name: str, claim: Claim) -> ClaimAnswer:
         """Return the answer in the file of a claim, judged again."""
@@ -183,6 +195,8 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
                 answer = _read(claim, content, str(path))
                 require_place(answer, work_of(question.work, batch, name), str(path))
                 answers[name] = answer
+                if isinstance(claim.mode, On):
+                    stores[name] = replace(usual, work=work_of(usual.work, batch, name))
             except InputError as error:
                 fault = ReasonKind.TOLD(error)
                 where = str(folder / f"{name}.json")
@@ -215,6 +229,7 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
         frozenset(missing),
         frozenset(refused),
         fingerprint != question.basis.library.fingerprint,
+        stores,
     )
 
 

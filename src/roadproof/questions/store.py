@@ -146,6 +146,16 @@ class Store:
                 return answer, known.origin
         return None
 
+    def has_given(self, answer: ClaimAnswer) -> bool:
+        """Return whether this program has given this very answer to the claim, in an earlier run."""
+        known = self._known(answer.claim, self.key(answer.claim)) if self.reads_known else None
+        return known is not None and answer_data(known[0]) == answer_data(answer)
+
+    def note(self, answer: ClaimAnswer) -> None:
+        """Remember an answer that this program has judged again, for ``has_given``."""
+        if self.reads_known:
+            remember(self.key(answer.claim), json.dumps(answer_data(answer)))
+
     def _require_enough(self, answer: ClaimAnswer, path: Path) -> None:
         """Require that as much was looked for as is asked.
 

@@ -6,7 +6,7 @@ acceleration and jerk are those of the piece that begins there.
 """
 
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from functools import lru_cache
 
@@ -71,6 +71,12 @@ def state_at(motion: Motion, time: Fraction) -> State:
 
 def states_at(motion: Motion, times: Iterable[Fraction]) -> tuple[State, ...]:
     """Return the states at many times >= 0."""
+    return tuple(each_state(motion, times))
+
+
+def each_state(motion: Motion, times: Iterable[Fraction]) -> Iterator[State]:
+    """Yield the state at each of many times >= 0, worked out when it is asked for."""
     starts = piece_starts(motion)
-    pairs = ((starts[bisect_right(starts, x, key=lambda state: state.time) - 1], x) for x in times)
-    return tuple(advance(state, time - state.time) for state, time in pairs)
+    for time in times:
+        state = starts[bisect_right(starts, time, key=lambda x: x.time) - 1]
+        yield advance(state, time - state.time)

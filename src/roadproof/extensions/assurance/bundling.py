@@ -27,7 +27,7 @@ from roadproof.extensions.assurance.requirements.fingerprints import lock_path
 from roadproof.extensions.assurance.settings import BundleSettings as Options
 from roadproof.extensions.assurance.tracing import requirements
 from roadproof.extensions.catalogue.catalogue_data import SCHEMA as CATALOGUE
-from roadproof.extensions.pages.page.results import read_results
+from roadproof.extensions.pages.page.results import PageResult, PageSources
 from roadproof.extensions.pages.reporting import page
 from roadproof.frontends.api.checking import CheckReport
 from roadproof.frontends.settings.option import takes
@@ -92,13 +92,13 @@ def bundle(*results: str | Path, out: str | Path, **options: Unpack[BundleKeywor
     key = None if settings.sign is None else _signing_key(Path(settings.sign))
     named, specs = [_inside(Path(x)) for x in results], [_inside(Path(x)) for x in settings.specs]
     evidence = [x for x in named if x.is_dir() or x.suffix == ".json"]
-    everything = dict.fromkeys([*named, *_tests_of(evidence), *_locks_of(named), *specs])
+    content, checked, sources = _evidence_page(evidence, specs, settings.progress)
+    everything = dict.fromkeys([*named, *_tests_of(sources.results), *_locks_of(named), *specs])
     files = {path.as_posix(): path.read_bytes() for path in _files_below(everything)}
-    content, checked = _evidence_page(evidence, specs, settings.progress)
     files[PAGE] = content
     pinned = _pin_packages(files, settings.wheel, settings.wheels)
     files[REQUIREMENTS] = "".join(f"{x.line}\n" for x in pinned).encode()
-    checkable = [x.as_posix() for x in read_results(evidence).checkable]
+    checkable = [x.as_posix() for x in sources.checkable]
     arguments = _arguments(files, specs, settings)
     script = _script(checkable, [x.as_posix() for x in specs], checked.exit_code, settings.wheels, arguments)
     files |= {"check.sh": script}
@@ -125,9 +125,9 @@ def _inside(path: Path) -> Path:
     return absolute.relative_to(Path.cwd().resolve())
 
 
-def _tests_of(evidence: Sequence[Path]) -> Iterator[Path]:
+def _tests_of(results: Sequence[PageResult]) -> Iterator[Path]:
     """Yield the test files of catalogues, which the check judges again. Raises ``InputError``."""
-    for result in read_results(evidence).results:
+    for result in results:
         request = result.data.get("request") if result.schema == CATALOGUE else None
         paths = request.get("paths") if isinstance(request, Mapping) else None
         yield from (_inside(Path(str(x))) for x in (paths if isinstance(paths, list) else ()))
@@ -148,15 +148,18 @@ def _files_below(paths: Iterable[Path]) -> Iterator[Path]:
 
 def _evidence_page(
     named: Sequence[Path], specs: Sequence[Path], progress: Progress | None
-) -> tuple[bytes, CheckReport]:
-    """Return the HTML page about the evidence and the report on it. Raises ``UsageError`` for no evidence."""
+) -> tuple[bytes, CheckReport, PageSources]:
+    """Return the HTML page about the evidence, the report on it, and what it was made of.
+
+    Raises ``UsageError`` for no evidence.
+    """
     with tempfile.TemporaryDirectory() as folder:
         if not named:
             raise UsageError("name at least one folder of evidence")
         made = page(*named, out=Path(folder) / PAGE, specs=specs, progress=progress, title="Bundle")
         if made.checked is None:
             raise UsageError(f"{', '.join(map(str, named))}: no evidence to check; name folders of --out")
-        return utf8(made.text), made.checked
+        return utf8(made.text), made.checked, made.sources
 
 
 def _pin_packages(files: dict[str, bytes], wheel: str | Path | None, with_wheels: bool) -> list[packages.Pin]:

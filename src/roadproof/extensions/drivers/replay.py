@@ -30,7 +30,7 @@ from roadproof.semantics.exact.algebraic import as_float
 from roadproof.semantics.exact.judging import judge
 from roadproof.semantics.exact.truth import Cut, TruthSet
 from roadproof.world.drive import Drive, Motion, Piece
-from roadproof.world.motion import piece_starts, state_at, states_at
+from roadproof.world.motion import each_state, piece_starts, state_at, states_at
 from roadproof.world.road import Road
 
 _FINE = 10**6  # parts of a second: instants that are no fraction are taken so much later at most
@@ -347,6 +347,6 @@ def _looked(scene: DriveScene, manoeuvre: ManoeuvreName) -> tuple[Fraction | Non
             its.v_lat,
             is_straight and time >= even,
         )
-        for time, mine, its in zip(times, states_at(me, times), states_at(other, times), strict=True)
+        for time, mine, its in zip(times, each_state(me, times), each_state(other, times), strict=True)
     )
     return controlled(seen, known_from(scene, manoeuvre))

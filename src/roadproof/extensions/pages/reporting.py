@@ -9,7 +9,7 @@ from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.extensions.pages import settings
 from roadproof.extensions.pages.keywords import PageKeywords
 from roadproof.extensions.pages.page.page_context import PageContext
-from roadproof.extensions.pages.page.results import PageResult, read_results
+from roadproof.extensions.pages.page.results import PageResult, PageSources, read_results
 from roadproof.extensions.pages.page.sections import drive_section, evidence_section, section
 from roadproof.extensions.pages.page.summary import summary_section
 from roadproof.extensions.pages.page.templates import page as page_of
@@ -30,13 +30,17 @@ from roadproof.verdict import ExitCode
 
 @dataclass(frozen=True, repr=False)
 class Page:
-    """A page as ``text`` and where it was written; ``checked``: the report on the evidence in it."""
+    """A page as ``text`` and where it was written.
+
+    ``checked``: the report on the evidence in it. ``sources``: the results that it shows.
+    """
 
     path: Path
     text: str
     drives: int
     results: int
     checked: CheckReport | None
+    sources: PageSources
 
     @property
     def exit_code(self) -> ExitCode:
@@ -85,7 +89,7 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
         keywords = CheckKeywords(
             solver=question.solver, specs=named, jobs=question.jobs, progress=question.progress
         )
-        checked = take_over(*sources.checkable, **keywords)
+        checked = take_over(*sources.checkable, folders=sources.folders, **keywords)
     library = load_library((*named, *(checked.specs if checked else ())))
     findings = () if checked is None else checked.findings
     context = PageContext(library, _by_file(findings), _rejected(findings))
@@ -114,7 +118,7 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
     text = page_of(heading, summary, [x.html for x in sections], context.documents)
     with atomic_file(target) as file:
         file.write(utf8(text))
-    return Page(target, text, len(context.documents), len(sources.results) + bool(alone), checked)
+    return Page(target, text, len(context.documents), len(sources.results) + bool(alone), checked, sources)
 
 
 def _provenance(checked: CheckReport | None, library: Library) -> Iterator[tuple[str, str]]:

@@ -152,15 +152,22 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
     code is 20 where an answer has no evidence, such as UNKNOWN or NONE-WITHIN. Raises
     ``InputError`` for a path that holds nothing, ``MissingSolverError``.
     """
-    return _check(paths, Check.of(options), takes_over=False)
+    return _check(paths, Check.of(options), False, {})
 
 
-def take_over(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
-    """Check evidence, but take over files that this version has accepted with these bytes before."""
-    return _check(paths, Check.of(options), takes_over=True)
+def take_over(
+    *paths: str | Path, folders: Sequence[QuestionFolder] = (), **options: Unpack[CheckKeywords]
+) -> CheckReport:
+    """Check evidence, but take over files that this version has accepted with these bytes before.
+
+    ``folders``: those among the paths that were read already.
+    """
+    return _check(paths, Check.of(options), True, {x.folder: x for x in folders})
 
 
-def _check(paths: Sequence[str | Path], settings: Check, takes_over: bool) -> CheckReport:
+def _check(
+    paths: Sequence[str | Path], settings: Check, takes_over: bool, known: Mapping[Path, QuestionFolder]
+) -> CheckReport:
     if not paths:
         raise UsageError("check() needs at least one file or folder of evidence")
     if settings.kernel is None:
@@ -172,7 +179,7 @@ def _check(paths: Sequence[str | Path], settings: Check, takes_over: bool) -> Ch
         kernels().require_installed(settings.kernel)
     named = tuple(Path(x) for x in settings.specs)
     library = load_library(named)
-    there = _Evidence.read([Path(x) for x in paths], named)
+    there = _Evidence.read([Path(x) for x in paths], named, known)
     given = there.given
     answered, opinions = (
         (None, {}) if settings.kernel is None else _put_to_kernel(settings.kernel, given, settings)
@@ -188,7 +195,7 @@ def _check(paths: Sequence[str | Path], settings: Check, takes_over: bool) -> Ch
     left: dict[str, tuple[str, ...]] = {}
     views: dict[str, QuestionAnswers[Any]] = {}
     for x in there.folders:
-        shown = {name: x.finding(name, by_path[file]) for file, name in x.files.items()}
+        shown = {name: x.finding(name, by_path[file], takes_over) for file, name in x.files.items()}
         findings += [*shown.values(), *x.undecided, *x.problems]
         if x.question.kind not in LISTS:
             views[str(x.folder)] = _accepted_view(x, shown)
@@ -214,14 +221,16 @@ class _Evidence:
     specs: tuple[Path, ...]
 
     @staticmethod
-    def read(paths: Sequence[Path], specs: tuple[Path, ...]) -> "_Evidence":
-        """Raises ``InputError`` for a path that is not there or holds nothing."""
+    def read(
+        paths: Sequence[Path], specs: tuple[Path, ...], known: Mapping[Path, QuestionFolder]
+    ) -> "_Evidence":
+        """Raises ``InputError`` for a path that is not there or holds nothing; ``known``: folders read."""
         places = folders_in(paths)
         folders: list[QuestionFolder] = []
         damaged: list[Finding] = []
         for place in places:
             try:
-                folders.append(read_folder(place, specs))
+                folders.append(known[place] if place in known else read_folder(place, specs))
             except RoadproofError as error:
                 where = str(place / QUESTION)
                 damaged.append(Finding(where, "", Acceptance.REJECTED, ReasonKind.TOLD(error)))
@@ -292,7 +301,7 @@ def write_sources(
     from roadproof.evidence.kernels import kernels
 
     named = tuple(Path(x) for x in specs)
-    given = _Evidence.read([Path(x) for x in paths], named).given
+    given = _Evidence.read([Path(x) for x in paths], named, {}).given
     questions = _kernel_questions(given)
     reasons = kernels().write(questions, Path(folder), jobs, kernel)
     by_name = {name: path for path, name in kernels().names_of(path for path, _ in given).items()}

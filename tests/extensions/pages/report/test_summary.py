@@ -142,12 +142,3 @@ def test_a_section_with_a_rejected_certificate_comes_first(tmp_path):
     assert found.exit_code != 0
     assert seen.index('<section id="result-1">') < seen.index('<section id="result-0">')
     assert "evidence rejected" in seen.partition("</table>")[0]
-
-
-@pytest.mark.parametrize("untested", [0, 1, 103])
-def test_a_catalogue_with_untested_situations_has_open_points(untested):
-    figure = {"set_name": "base", "kind": "classes", "sector": "", "tested": 115 - untested, "total": 115}
-    found = overview(PageResult("x", "roadproof/catalogue/1", {"tests": [], "figures": [figure]}), "", "")
-    assert found.remarked == bool(untested)
-    assert found.rank == (1 if untested else 2)
-    assert (f"{untested} of 115 classes untested" in found.counts) == bool(untested)

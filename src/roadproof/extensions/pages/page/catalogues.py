@@ -78,7 +78,6 @@ def catalogue(result: PageResult, context: PageContext, words: Words) -> dict[st
     """Return situations and tests, decisions of driver models, and how the answer was made."""
     data = read(CatalogueData, result.data, result.name)
     targets = (*data.targets, *data.gaps.targets)
-    required = targets if data.gaps.asked else data.targets
     tests = [
         _Test(x, [y for y in data.facts if y.test == x.id], f"test-{result.id}-{k}")
         for k, x in enumerate(data.tests)
@@ -90,8 +89,6 @@ def catalogue(result: PageResult, context: PageContext, words: Words) -> dict[st
         "targets": targets,
         "situations": sheet_of(targets, missing, any(x.possible for x in targets)),
         "tests": tests,
-        "required": len(required),
-        "lacking": sum(x.name in data.not_tested for x in required),
         "other_facts": [x for x in data.facts if x.test not in known],
         "drive_of": _drives(data, context),
         **_decisions(data.decisions),

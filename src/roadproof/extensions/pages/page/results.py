@@ -13,7 +13,7 @@ from roadproof.evidence.checking import SCHEMAS
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, read_json
 from roadproof.extensions.surveys.classify.question import ClassifyQuestion
 from roadproof.extensions.surveys.classify.shares import with_shares
-from roadproof.questions.checking import is_question, read_folder
+from roadproof.questions.checking import QuestionFolder, is_question, read_folder
 from roadproof.questions.question import QUESTION
 from roadproof.questions.views import view_data
 
@@ -44,10 +44,14 @@ class PageResult:
 
 @dataclass(frozen=True)
 class PageSources:
-    """The ``results`` in the order of their paths, and files of ``evidence`` that belong to none of them."""
+    """The ``results`` in the order of their paths, and files of ``evidence`` that belong to none of them.
+
+    ``folders``: the folders of answers among the results, as they were read.
+    """
 
     results: tuple[PageResult, ...]
     evidence: tuple[Path, ...]
+    folders: tuple[QuestionFolder, ...] = ()
 
     @property
     def checkable(self) -> tuple[Path, ...]:
@@ -64,6 +68,7 @@ def read_results(paths: Sequence[Path], specs: Sequence[Path] = ()) -> PageSourc
     """
     results: list[PageResult] = []
     evidence: list[Path] = []
+    folders: list[QuestionFolder] = []
     for path in paths:
         if not path.exists():
             raise InputError(f"{path} does not exist: name a file or a folder that a command has written")
@@ -74,7 +79,8 @@ def read_results(paths: Sequence[Path], specs: Sequence[Path] = ()) -> PageSourc
             )
         for file in files:
             if file.name == QUESTION:
-                results.append(_answered_question(file.parent, specs, len(results)))
+                folders.append(read_folder(file.parent, specs))
+                results.append(_answered_question(folders[-1], len(results)))
                 continue
             schema, data, digest = _read_result(file)
             if schema in SCHEMAS:
@@ -83,12 +89,12 @@ def read_results(paths: Sequence[Path], specs: Sequence[Path] = ()) -> PageSourc
                 here = file.parent if file.name == TRAFFIC else _evidence_folder(file)
                 name = file.parent.name if file.name == TRAFFIC else file.stem
                 results.append(PageResult(name or str(file), schema, data, here, len(results), digest))
-    return PageSources(tuple(results), tuple(dict.fromkeys(evidence)))
+    return PageSources(tuple(results), tuple(dict.fromkeys(evidence)), tuple(folders))
 
 
-def _answered_question(folder: Path, specs: Sequence[Path], number: int) -> PageResult:
+def _answered_question(stored: QuestionFolder, number: int) -> PageResult:
     """Return the combined answers of a folder as a result."""
-    stored = read_folder(folder, specs)
+    folder = stored.folder
     data = view_data(stored.question, stored.answers, Path())
     schema = Fields(data, str(folder)).text("schema")
     if stored.question.kind == ClassifyQuestion.kind:

@@ -10,6 +10,7 @@ from roadproof.evidence.codec import read
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding, summary
 from roadproof.evidence.strict import Json
 from roadproof.extensions.catalogue.catalogue_data import Figure
+from roadproof.extensions.pages.page.open_points import open_points
 from roadproof.extensions.pages.page.results import PageResult
 from roadproof.extensions.pages.page.templates import render
 from roadproof.frontends.report.sheet import excerpt
@@ -34,7 +35,7 @@ _ANCHORS = {
 """The prefixes of ids of entries, by kind of result and field; other entries have no id of their own."""
 
 _REMARKS = {"faults": "fault", "doubts": "doubt", "contradictions": "contradiction"}
-"""A catalogue's remarks about its tests, which deserve early attention."""
+"""A catalogue's remarks about its tests, by their words in counts."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +55,8 @@ class SummaryStatement:
 class Overview:
     """The row of a section in the summary.
 
-    ``counts``: counts in words; ``rejected``: the number of reasons to reject its evidence; ``remarked``:
-    whether tests have faults or situations are untested.
+    ``counts``: counts in words; ``rejected``: the number of reasons to reject its evidence; ``points``: what
+    is open beside the verdicts, such as situations that no test shows.
     """
 
     title: str
@@ -66,7 +67,7 @@ class Overview:
     counts: str = ""
     statements: Sequence[SummaryStatement] = ()
     rejected: int = 0
-    remarked: bool = False
+    points: Sequence[SummaryStatement] = ()
 
     @property
     def verdicts(self) -> list[str]:
@@ -80,7 +81,7 @@ class Overview:
             return 0
         surprising = any(x.verdict == "REFUTED" and x.expected is False for x in self.statements)
         is_open = any(x.verdict in (*OPEN, *NOT_SHOWN) for x in self.statements)
-        return 1 if surprising or self.remarked or is_open else 2
+        return 1 if surprising or self.points or is_open else 2
 
 
 def overview(result: PageResult, title: str, question: str, rejected: int = 0) -> Overview:
@@ -92,11 +93,9 @@ def overview(result: PageResult, title: str, question: str, rejected: int = 0) -
         for x, at in entries
     ]
     subject = _subject(result, [x for x, _ in entries])
-    remarked = result.kind == "catalogue" and (
-        any(result.data.get(key) for key in _REMARKS) or any(x.tested < x.total for x in _figures(result))
-    )
+    points = [SummaryStatement(word, excerpt(text, 240), at) for word, text, at in open_points(result)]
     counts = _counts_of(result)
-    return Overview(title, question, target, result.name, subject, counts, statements, rejected, remarked)
+    return Overview(title, question, target, result.name, subject, counts, statements, rejected, points)
 
 
 def _statements(result: PageResult) -> Iterator[tuple[Mapping[str, Json], str]]:
@@ -217,7 +216,7 @@ def _counts_of(result: PageResult) -> str:
         totals = [(len(x) if isinstance(x := data.get(key), list) else 0, words) for key, words in counts]
         parts = [f"{n} {_plural(words, n)}" for n, words in totals if n]
         parts += [
-            f"{x.total - x.tested} of {x.total} {x.kind} untested (set {x.set_name})"
+            f"{x.total - x.tested} of {x.total} {x.kind} not tested (set {x.set_name})"
             for x in _figures(result)
             if x.tested < x.total
         ]
@@ -264,9 +263,8 @@ def summary_section(
         "summary.html",
         overviews=overviews,
         checked=summary(findings, solver) if any(x.kind != NO_EVIDENCE for x in findings) else "",
-        remarked=[x for x in overviews if x.remarked],
         wrong=[x for x in findings if x.outcome is not Acceptance.ACCEPTED and x.kind != NO_EVIDENCE],
-        open=[x for x in statements if x.verdict in OPEN],
+        open=[*(y for x in overviews for y in x.points), *(x for x in statements if x.verdict in OPEN)],
         unshown=sorted(
             (x for x in statements if x.verdict in NOT_SHOWN), key=lambda x: -NOT_SHOWN.index(x.verdict)
         ),

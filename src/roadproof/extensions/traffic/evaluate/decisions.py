@@ -4,11 +4,12 @@ The verdict is that of the drive, or of the samples, in which the model drives S
 """
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
+from typing import Self
 
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.subject import TestedSide
@@ -85,6 +86,11 @@ class Drivers:
     values: Mapping[str, Fraction]
     models: tuple[str, ...]
     _read: dict[str, Formula] = field(default_factory=dict, repr=False, compare=False)
+    _decided: dict[str, tuple[Decision, ...]] = field(default_factory=dict, repr=False, compare=False)
+
+    def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
+        """Leave out what was worked out, so that no process sends it to another one."""
+        return type(self), (self.specification, self.values, self.models)
 
     @cached_property
     def settings(self) -> DriverSettings:
@@ -94,6 +100,12 @@ class Drivers:
     def of(self, manoeuvre: ManoeuvreName) -> tuple[str, ...]:
         """The models that speak of a manoeuvre."""
         return tuple(x for x in self.models if manoeuvre in MODELS[x].manoeuvres)
+
+    def decided(self, key: str, decide: Callable[[], tuple[Decision, ...]]) -> tuple[Decision, ...]:
+        """Return the decisions under a key that says all of a drive, by ``decide`` where they are new."""
+        if key not in self._decided:
+            self._decided[key] = decide()
+        return self._decided[key]
 
     def begins(self, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...]) -> Formula:
         """Return the formula that the manoeuvre begins in a state, at the values of parameters."""
@@ -147,7 +159,18 @@ def manoeuvre_of(scenario: str) -> ManoeuvreName | None:
 def decide_drive(
     file: DriveFile, drivers: Drivers, scenario: str, vehicles: tuple[str, ...], since: float
 ) -> Iterator[Decision]:
-    """Yield a decision for each model that speaks of the scenario, which holds from ``since`` (s) on."""
+    """Yield a decision for each model that speaks of the scenario, which holds from ``since`` (s) on.
+
+    They are worked out once for a drive: claims, their judges and views ask for them.
+    """
+    key = digest(file.drive, file.road, scenario, vehicles, since)
+    decisions = drivers.decided(key, lambda: tuple(_decided(file, drivers, scenario, vehicles, since)))
+    yield from decisions
+
+
+def _decided(
+    file: DriveFile, drivers: Drivers, scenario: str, vehicles: tuple[str, ...], since: float
+) -> Iterator[Decision]:
     manoeuvre = manoeuvre_of(scenario)
     if manoeuvre is None or not drivers.of(manoeuvre):
         return

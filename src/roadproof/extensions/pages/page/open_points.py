@@ -1,0 +1,58 @@
+"""What results leave open: untested situations, faulty and doubtful tests, and what a reader left out."""
+
+from collections.abc import Iterator
+from typing import Final, TypeAlias
+
+from roadproof.evidence.codec import read
+from roadproof.evidence.strict import Json
+from roadproof.extensions.catalogue.catalogue_data import CatalogueData, Remarks
+from roadproof.extensions.pages.page.results import PageResult
+
+Point: TypeAlias = tuple[str, str, str]
+"""A word, a text, and the id of the part of the page that says more."""
+NOT_TESTED: Final = "not tested"
+LEFT_OUT: Final = "left out"
+UNDECIDED: Final = "undecided"
+
+
+def open_points(result: PageResult) -> Iterator[Point]:
+    """Yield the open points of a result, beside those of its verdicts."""
+    target = f"result-{result.id}"
+    if result.kind == "catalogue":
+        yield from _of_catalogue(read(CatalogueData, result.data, result.name), result.id)
+    for text in _texts(result.data.get("left_out")):
+        yield LEFT_OUT, text, target
+
+
+def _of_catalogue(data: CatalogueData, number: int) -> Iterator[Point]:
+    places = {x.id: f"test-{number}-{k}" for k, x in enumerate(data.tests)}
+    whole = f"result-{number}"
+    words = {x.name: x.words for x in (*data.targets, *data.gaps.targets)}
+    for name in data.not_tested:
+        yield NOT_TESTED, f"{name}: {words[name]}" if words.get(name) else name, whole
+    for x in data.figures:
+        if x.tested < x.total and not x.sector and x.set_name != data.set.partition(",")[0]:
+            yield NOT_TESTED, f"{x.total - x.tested} of {x.total} {x.kind} of set {x.set_name}", whole
+    remarks: tuple[tuple[str, Remarks], ...] = (
+        ("fault", data.faults),
+        ("in doubt", data.doubts),
+        ("contradiction", data.contradictions),
+    )
+    for word, these in remarks:
+        yield from ((word, f"{', '.join(x.tests)}: {x.told}", places.get(x.tests[0], whole)) for x in these)
+    yield from (("in doubt", f"{name}: {reason}", whole) for name, reason in data.gaps.open.items())
+    models: dict[tuple[str, str], list[str]] = {}
+    for x in data.decisions:
+        if x.side == UNDECIDED:
+            models.setdefault((x.test, x.scenario), []).append(x.driver)
+    for (test, scenario), drivers in models.items():
+        yield UNDECIDED, f"{test}, {scenario}: {', '.join(drivers)}", places.get(test, whole)
+
+
+def _texts(value: Json) -> Iterator[str]:
+    """Yield the texts of a list, or of lists by name, each with the name."""
+    if isinstance(value, dict):
+        for name, texts in value.items():
+            yield from (f"{name}: {x}" for x in _texts(texts))
+    elif isinstance(value, list):
+        yield from (str(x) for x in value)
