@@ -41,6 +41,7 @@ KEYS: Final[Mapping[str, Key]] = {
     "checked_files": "name",
     "animations": "name",
     "pictures": "name",
+    "pages": "name",
     "completions": "name",
     "options": "none",
     "sections": "name",
@@ -118,6 +119,8 @@ class Extension(NamedTuple):
     """Functions that draw an answer of the core, by the kind of its question; ``drive`` draws a drive file,
     by a library, under a title. Each returns a ``frontends.report.picture.Picture``.
     """
+    pages: Entries = _NONE
+    """Functions that write a page about a folder of answers into it, by the kind of its question."""
     completions: Entries = _NONE
     """Functions that give words with descriptions, with which a shell completes a value, by flag."""
     options: Entries = _NONE

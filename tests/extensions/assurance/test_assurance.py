@@ -3,17 +3,18 @@
 import hashlib
 import json
 import shutil
-import tomllib
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import roadproof as rp
 from roadproof.errors import InputError
 from roadproof.extensions.assurance.case.case import ElementKind
 from roadproof.extensions.assurance.case.reading import read_case
 from roadproof.extensions.assurance.case.states import ElementState
-from roadproof.extensions.assurance.case.template import fill_template
+from roadproof.extensions.assurance.case.template import EvidenceFolder, fill_template, tables
 from roadproof.extensions.assurance.folder_view import folder_data
 from roadproof.extensions.assurance.solutions import whole_verdict
 from roadproof.frontends.cli.main import main
@@ -290,15 +291,71 @@ def test_the_template_counts_what_each_folder_has(
 def test_the_example_claims_what_the_template_does() -> None:
     """The example is a case of the template, whose goals name sets, manoeuvres and values."""
     example = read_case(ROOT / "examples" / "assurance" / "case.toml")
-    plain = tomllib.loads(fill_template("catalogue-coverage", [], Path()))
-    assert [name for name, x in plain.items() if "undeveloped" in x] == ["G2", "G3", "G4"]
-    fixed = {name: table for name, table in plain.items() if isinstance(table, dict)}
-    for name, table in fixed.items():
+    kinds = ("coverage", "catalogue", "preventable")
+    plain = dict(tables([EvidenceFolder(x, x, {}) for x in kinds]))
+    for name, table in plain.items():
         (text,) = (table[str(kind)] for kind in ElementKind if str(kind) in table)
         assert example.elements[name].text == text
-    kinds = {Path(x.evidence.path).name: x for x in example.solutions if x.evidence}
-    assert all(x.evidence and x.evidence.entries for x in kinds.values())
-    assert {*kinds} == {"coverage", "catalogue", "cut-out", "cut-in", "deceleration"}
+    folders = {Path(x.evidence.path).name: x for x in example.solutions if x.evidence}
+    assert all(x.evidence and x.evidence.entries for x in folders.values())
+    assert {*folders} == {"coverage", "catalogue", "cut-out", "cut-in", "deceleration"}
+
+
+@given(
+    st.lists(
+        st.tuples(st.sampled_from(["coverage", "overlap", "catalogue", "preventable"]), st.integers(0, 3)),
+        min_size=1,
+        max_size=5,
+    )
+)
+def test_the_template_has_what_there_is_and_no_more(kinds: list[tuple[str, int]]) -> None:
+    """A branch for each kind of evidence, a solution for what a folder shows, and a goal for the rest."""
+    words = dict.fromkeys(
+        ("set", "pairs", "targets", "boundary", "manoeuvre", "plates", "drives", "lemmas"), "x"
+    )
+    folders = [
+        EvidenceFolder(f"{kind}-{k}", kind, words, entries=entries, left=("a",) * (entries < 2))
+        for k, (kind, entries) in enumerate(kinds)
+    ]
+    made = dict(tables(folders))
+    there = {kind for kind, _ in kinds}
+    branches = {"G2": {"coverage", "overlap"}, "G3": {"catalogue"}, "G4": {"preventable"}}
+    assert {x for x in branches if x in made} == {x for x, those in branches.items() if those & there}
+    assert {x["evidence"] for x in made.values() if "evidence" in x} == {x.path for x in folders if x.entries}
+    undeveloped = [x["goal"] for x in made.values() if x.get("undeveloped")]
+    assert len(undeveloped) == sum(bool(x.left) for x in folders)
+    assert ("A2" in made) == ("preventable" in there)
+    assert ("collisions" in made["G1"]["goal"]) == ("preventable" in there)
+    assert ("tests show" in made["G1"]["goal"].lower()) == ("catalogue" in there)
+    named = {x for table in made.values() for x in table.get("supported-by", ())}
+    assert named == {x for x in made if x[0] in "GS"} - {"G1"}
+
+
+def test_what_a_folder_does_not_show_is_a_goal_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An untested scenario, a fault of a test, and a search that found nothing are not claimed."""
+    monkeypatch.chdir(tmp_path)
+    drives = tmp_path / "tests"
+    drives.mkdir()
+    shutil.copy(ROOT / "examples" / "catalogue" / "tests" / "drives" / "braking.json", drives)
+    settings = {"among": "1,4", "classes": False, "drivers": (), "jobs": 1}
+    rp.catalogue(drives, out="catalogue", **settings)
+    rp.witness("4", "v_lon(SV) > 20 m/s and v_lon(SV) < 10 m/s", out="drives", pictures=False, jobs=1)
+    text = fill_template("catalogue-coverage", [Path("catalogue"), Path("drives")], Path())
+    Path("case.toml").write_text(text, "utf-8")
+    assert 'goal = "The tests show 1 scenario of set base and are what they claim"' in text
+    assert 'goal = "Still to be shown, of catalogue: no test shows scenario_1"' in text
+    assert 'goal = "1 formula can happen"' in text
+    assert "Still to be shown, of drives: " in text
+    found = rp.assurance("case.toml", jobs=1)
+    assert {found.states[x.id] for x in read_case(Path("case.toml")).solutions} == {ElementState.HOLDS}
+    assert found.states["G1"] is ElementState.UNDEVELOPED
+    shutil.copy(ROOT / "examples" / "catalogue" / "tests" / "drives" / "torn.json", drives)
+    rp.catalogue(drives, out="faulty", **settings)
+    faulty = fill_template("catalogue-coverage", [Path("faulty")], Path())
+    assert "are what they claim" not in faulty
+    assert "1 fault of tests that are not what they claim; no test shows scenario_1" in faulty
 
 
 @pytest.mark.parametrize(

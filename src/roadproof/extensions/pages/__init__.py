@@ -17,6 +17,7 @@ EXTENSION = Extension(
     incubating=("animations as GIF and MP4",),
     functions={"page": "reporting:page", "atlas": "atlas.atlas:atlas"},
     pictures={"drive": "drive_picture:draw_drive"},
+    pages={"catalogue": "reporting:folder_page"},
     animations={"svg": "animation:SVG", "gif": "animation:GIF", "mp4": "animation:MP4"},
     completions={"--animate": "completion:formats"},
     sections={

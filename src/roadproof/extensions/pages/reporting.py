@@ -121,6 +121,11 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
     return Page(target, text, len(context.documents), len(sources.results) + bool(alone), checked, sources)
 
 
+def folder_page(folder: Path) -> None:
+    """Write ``page.html`` about the answers in a folder into it."""
+    page(folder, out=folder / "page.html", title=folder.resolve().name)
+
+
 def _provenance(checked: CheckReport | None, library: Library) -> Iterator[tuple[str, str]]:
     """Yield the version that made the page, and the fields of answers that nothing was compared with."""
     yield "page made by", f"roadproof {VERSION} with definitions {library.fingerprint}"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, Generic, Self, TypeVar
 from roadproof.engines.modifier import find_modifier
 from roadproof.evidence import answer as answers
 from roadproof.evidence.answer_files import UndecidedFile
+from roadproof.extension import entries, imported
 from roadproof.frontends.api.answer import BaseAnswer
 from roadproof.questions.decide import Decisions, decide_claims, take_over
 from roadproof.questions.store import keep_all
@@ -104,6 +105,8 @@ class QuestionAnswers(BaseAnswer, Generic[View]):
     def _add_files(self, folder: Path, pictures: bool) -> None:
         for name, content in self.files(pictures).items():
             write_atomic(folder / name, content)
+        if pictures and self.question.kind in entries("pages"):
+            imported("pages", self.question.kind)(folder)
 
 
 def evidence_of(answer: answers.ClaimAnswer) -> Evidence:

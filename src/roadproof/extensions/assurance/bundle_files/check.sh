@@ -28,7 +28,7 @@ unset PYTHONPATH
 check() {
 	roadproof check @specs@ "$@" @evidence@ > "$place/told" 2>&1
 	code=$?
-	tail -n 1 "$place/told"
+	grep '^[0-9]* of [0-9]* accepted by ' "$place/told" || tail -n 1 "$place/told"
 	[ $code -eq @code@ ] && return
 	grep -v '^PROVED\|^WITNESSED' "$place/told" | head -n 20
 	return 1

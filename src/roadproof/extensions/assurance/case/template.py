@@ -2,20 +2,24 @@
 
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from fractions import Fraction
 from pathlib import Path
 
 from roadproof.errors import InputError
+from roadproof.evidence.answer import ClaimAnswer
+from roadproof.evidence.claim import HELP
 from roadproof.evidence.codec import read
 from roadproof.evidence.strict import Fields
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES
 from roadproof.extensions.drivers.preventable.data import PreventableData
 from roadproof.library.scenarios import EVERY_SCENARIO
-from roadproof.questions.checking import is_question, read_folder
+from roadproof.questions.checking import QuestionFolder, is_question, read_folder
 from roadproof.questions.views import view_data
+from roadproof.verdict import Verdict
 from roadproof.world.units import UNITS
 
 TEMPLATES = ("catalogue-coverage",)
@@ -70,22 +74,44 @@ _DRIVER: Mapping[str, _EvidenceUse] = {
         (f"{_MODEL}*",),
     )
 }
-_BRANCHES: Sequence[tuple[str, str, Mapping[str, _EvidenceUse]]] = (
-    (
-        "The formal scenarios have the properties below",
+
+
+@dataclass(frozen=True)
+class _Branch:
+    """A part of the argument, which a case has where there is evidence for it.
+
+    ``contexts``: the ids of those in which its goal is stated.
+    """
+
+    title: str
+    goal: str
+    strategy: str
+    uses: Mapping[str, _EvidenceUse]
+    contexts: tuple[str, ...]
+
+
+_BRANCHES = (
+    _Branch(
+        "formal scenarios",
+        "the formal scenarios have the properties below",
         "Argument over the properties of the formal scenarios",
         _SCENARIOS,
+        ("C1", "C2", "A1"),
     ),
-    ("Tests show the formal scenarios below", "Argument over the review of the tests", _TESTS),
-    (
-        f"The collisions that driver model {_MODEL} prevents are known for the manoeuvres and values below",
+    _Branch(
+        "test catalogue",
+        "tests show the formal scenarios below",
+        "Argument over the review of the tests",
+        _TESTS,
+        ("C1", "C2", "A1"),
+    ),
+    _Branch(
+        f"{_MODEL} driver",
+        f"the collisions that driver model {_MODEL} prevents are known for the manoeuvres and values below",
         "Argument over the manoeuvres with evidence",
         _DRIVER,
+        ("C1", "A2"),
     ),
-)
-_TOP = (
-    "Tests show the formal traffic disturbance scenarios below, and the collisions that driver model "
-    f"{_MODEL} prevents are known for the manoeuvres and values below"
 )
 _CONTEXTS: Mapping[str, Table] = {
     "C1": {"context": "The traffic disturbance scenarios of ISO 34502, formal in signal temporal logic"},
@@ -98,34 +124,38 @@ _CONTEXTS: Mapping[str, Table] = {
 def fill_template(name: str, evidence: Sequence[Path], home: Path) -> str:
     """Return the TOML text of a case for folders of evidence; the case will be in folder ``home``.
 
-    Goals without evidence are undeveloped. Raises ``InputError`` for a folder that the template cannot use.
+    It has goals for what the evidence shows, and an undeveloped goal for the rest of a folder. Raises
+    ``InputError`` for a folder that the template cannot use.
     """
     if name not in TEMPLATES:
         raise InputError(f"template={name!r}; there is {', '.join(TEMPLATES)}")
-    folders = [_EvidenceFolder.read(x, home) for x in evidence]
-    uses = {kind for _, _, uses in _BRANCHES for kind in uses}
+    folders = [EvidenceFolder.read(x, home) for x in evidence]
+    uses = {kind for branch in _BRANCHES for kind in branch.uses}
     for x in folders:
         if x.kind not in uses:
             accepted = ", ".join("prove" if kind == "verdicts" else kind for kind in sorted(uses))
             raise InputError(f"{x.path} has answers of {x.kind}; template {name} takes those of {accepted}")
-    return _as_toml("Test catalogue and careful driver", dict(_tables(folders)))
+    return as_toml(dict(tables(folders)))
 
 
 @dataclass(frozen=True)
-class _EvidenceFolder:
+class EvidenceFolder:
     """A folder of evidence: the ``kind`` of its answers, and ``words`` that fill in the template.
 
-    ``lemmas``: whether it has lemmas; ``entries``: the number of entries that the argument is about.
+    ``lemmas``: whether it has lemmas. ``entries``: the number of entries that the argument is about; 0 where
+    it shows nothing. ``select``: their names, where they are not all. ``left``: the names of the others.
     """
 
     path: str
     kind: str
     words: Mapping[str, str]
     lemmas: bool = False
-    entries: int | None = None
+    entries: int = 0
+    select: tuple[str, ...] = ()
+    left: tuple[str, ...] = ()
 
     @staticmethod
-    def read(folder: Path, home: Path) -> "_EvidenceFolder":
+    def read(folder: Path, home: Path) -> "EvidenceFolder":
         """Return what the template needs to know of a folder. Raises ``InputError`` for a folder without
         answers.
         """
@@ -135,46 +165,79 @@ class _EvidenceFolder:
         stored = read_folder(folder)
         data = Fields(view_data(stored.question, stored.answers, Path()), str(folder))
         kind = [*data.text("schema").split("/"), ""][1]
-        if kind == "preventable":
-            return _folder_of_plates(path, read(PreventableData, data.content, str(folder)))
-        return _folder_of_answer(path, kind, data, len(stored.files) + len([*stored.undecided]))
+        match kind:
+            case "preventable":
+                return _folder_of_plates(path, read(PreventableData, data.content, str(folder)))
+            case "catalogue":
+                return _folder_of_tests(path, data, _count(stored))
+            case "coverage":
+                is_shown = data.text("verdict") in _SCENARIOS[kind].expect
+                left = () if is_shown else (f"{data.text('verdict')} for set {data.text('set')}",)
+                words = {"set": data.text("set")}
+                return EvidenceFolder(path, kind, words, entries=_count(stored) * is_shown, left=left)
+            case _:
+                return _folder_of_claims(path, kind, data, stored)
 
 
-def _folder_of_answer(path: str, kind: str, data: Fields, entries: int) -> _EvidenceFolder:
-    """Return the folder of an answer with the words for its goal; ``entries``: how many findings ``check``
-    has for it.
-    """
-    match kind:
-        case "coverage":
-            return _EvidenceFolder(path, kind, {"set": data.text("set")}, entries=entries)
-        case "verdicts":
-            names = [Fields(x, path).text("property") for x in data.items("verdicts")]
-            properties_named = [x for x in names if fnmatchcase(x, _PROPERTIES)]
-            if not properties_named:
-                raise InputError(
-                    f"{path} has no claim of a template property: run prove with names such as P2"
-                )
-            listed = ", ".join(dict.fromkeys(properties_named))
-            properties = f"propert{'y' if len({*properties_named}) == 1 else 'ies'} {listed}"
-            words = {"properties": properties, "claims": _number(len(properties_named), "claim")}
-            return _EvidenceFolder(path, kind, words, entries=len(properties_named))
-        case "witness":
-            numbers = [x.get("scenario") for x in data.items("verdicts") if isinstance(x, dict)]
-            word = "scenario" if all(x is not None for x in numbers) else "formula"
-            return _EvidenceFolder(path, kind, {"drives": _number(len(numbers), word)}, entries=entries)
-        case "overlap":
-            pairs = len(data.items("verdicts"))
-            words = {"set": data.text("set"), "pairs": _number(pairs, "pair")}
-            return _EvidenceFolder(path, kind, words, entries=entries)
-        case "catalogue":
-            names = [Fields(x, path).text("name") for x in data.items("targets")]
-            count = sum(fnmatchcase(x, EVERY_SCENARIO) for x in names)
-            words = {"set": data.text("set"), "targets": _number(count, "scenario")}
-            return _EvidenceFolder(path, kind, words, entries=entries)
-    return _EvidenceFolder(path, kind, {})
+def _count(stored: QuestionFolder) -> int:
+    """Return how many findings ``check`` has for a folder."""
+    return len(stored.files) + len([*stored.undecided])
 
 
-def _folder_of_plates(path: str, index: PreventableData) -> _EvidenceFolder:
+def _folder_of_claims(path: str, kind: str, data: Fields, stored: QuestionFolder) -> EvidenceFolder:
+    """Return the folder of answers whose claims the argument is about one by one."""
+    if kind not in _SCENARIOS:
+        return EvidenceFolder(path, kind, {})
+    own = {x: y for x, y in stored.answers.items() if not x.startswith(HELP)}
+    groups: dict[str, dict[str, ClaimAnswer]] = {}
+    for name, answer in own.items():
+        groups.setdefault(stored.question.label(name) or answer.claim.query.text, {})[name] = answer
+    about = [x for x in groups if kind != "verdicts" or fnmatchcase(x, _PROPERTIES)]
+    if not about:
+        raise InputError(f"{path} has no claim of a template property: run prove with names such as P2")
+    shown = [x for x in about if _is_shown(groups[x].values(), _SCENARIOS[kind].expect)]
+    left = tuple(
+        f"{x}: {', '.join(dict.fromkeys(str(y.verdict) for y in groups[x].values()))}"
+        for x in about
+        if x not in shown
+    )
+    properties = dict.fromkeys(re.split(r"[-\s]", x)[0] for x in shown)
+    is_numbered = all(x.get("scenario") is not None for x in data.items("verdicts") if isinstance(x, dict))
+    words = {
+        "set": stored.question.basis.specification.set_name,
+        "claims": _number(len(shown), "claim"),
+        "properties": f"propert{'y' if len(properties) == 1 else 'ies'} {', '.join(properties)}",
+        "drives": _number(len(shown), "scenario" if is_numbered else "formula"),
+        "pairs": _number(len(shown), "pair"),
+    }
+    files = [name for x in shown for name in groups[x]]
+    select = tuple(f"{x}.json" for x in files) if left else ()
+    entries = len(files) if left or kind == "verdicts" else _count(stored)
+    return EvidenceFolder(path, kind, words, entries=entries, select=select, left=left)
+
+
+def _is_shown(answers: Iterable[ClaimAnswer], expect: Sequence[str]) -> bool:
+    """Return whether answers to the parts of a question show it: a drive of one, or a proof of each."""
+    verdicts = {str(x.verdict) for x in answers}
+    return Verdict.WITNESSED in {*expect} & verdicts or verdicts <= {*expect}
+
+
+def _folder_of_tests(path: str, data: Fields, count: int) -> EvidenceFolder:
+    """Return the folder of a catalogue: the scenarios that its tests show, if all tests are as they claim."""
+    every = (Fields(x, path).text("name") for x in data.items("targets"))
+    names = [x for x in every if fnmatchcase(x, EVERY_SCENARIO)]
+    missing = {*data.texts("not_tested")}
+    tested = [x for x in names if x not in missing]
+    left = [f"no test shows {x}" for x in names if x in missing]
+    if faults := len(data.items("faults")):
+        left.insert(0, f"{_number(faults, 'fault')} of tests that are not what they claim")
+    words = {"set": data.text("set"), "targets": _number(len(tested), "scenario")}
+    entries = count if tested and not faults else 0
+    select = tuple(tested) if len(tested) < len(names) else ()
+    return EvidenceFolder(path, "catalogue", words, entries=entries, select=select, left=tuple(left))
+
+
+def _folder_of_plates(path: str, index: PreventableData) -> EvidenceFolder:
     """Return the folder of plates and lemmas. Raises ``InputError`` where no plate is of the model."""
     plates = [x for x in index.plates if x.model == _MODEL]
     if not plates:
@@ -200,49 +263,77 @@ def _folder_of_plates(path: str, index: PreventableData) -> _EvidenceFolder:
         "boundary": "follows from the motion" if count else "is shown by drives, without a lemma,",
         "lemmas": f", and {_number(count, 'lemma')} about its formula" if count else "",
     }
-    return _EvidenceFolder(path, "preventable", words, count > 0, len(plates) + drives + count)
+    return EvidenceFolder(path, "preventable", words, count > 0, len(plates) + drives + count)
 
 
 def _number(count: int, what: str) -> str:
     return f"{count} {what}{'s' * (count != 1)}"
 
 
-def _tables(folders: Sequence[_EvidenceFolder]) -> Iterator[tuple[str, Table]]:
-    goals = [f"G{k}" for k in range(2, 2 + len(_BRANCHES))]
-    yield "G1", {"goal": _TOP, "supported-by": ["S1"], "in-context-of": [*_CONTEXTS]}
-    yield from _CONTEXTS.items()
-    strategy = "Argument over scenarios, tests and driver"
-    yield "S1", {"strategy": strategy, "supported-by": goals}
+def tables(folders: Sequence[EvidenceFolder]) -> Iterator[tuple[str, Table]]:
+    """Yield the elements of the case by id; a branch without a folder is left out."""
+    uses = {kind: use for branch in _BRANCHES for kind, use in branch.uses.items()}
+    branches = {
+        f"{k}": (branch, those)
+        for k, branch in enumerate(_BRANCHES, 2)
+        if (those := [x for kind in branch.uses for x in folders if x.kind == kind])
+    }
+    contexts = [x for x in _CONTEXTS if any(x in branch.contexts for branch, _ in branches.values())]
+    goal = _sentence([branch.goal for branch, _ in branches.values()])
+    yield "G1", {"goal": goal, "supported-by": ["S1"], "in-context-of": contexts}
+    yield from ((x, _CONTEXTS[x]) for x in contexts)
+    titles = [branch.title for branch, _ in branches.values()]
+    yield "S1", {"strategy": f"Argument over {_listed(titles)}", "supported-by": [f"G{k}" for k in branches]}
     count = 0
-    for goal, (text, way, uses) in zip(goals, _BRANCHES, strict=True):
-        matches = [(x, uses[x.kind]) for kind in uses for x in folders if x.kind == kind]
-        if not matches:
-            yield goal, {"goal": text, "undeveloped": True}
-            continue
-        inner = [f"{goal}.{k}" for k in range(1, 1 + len(matches))]
-        yield goal, {"goal": text, "supported-by": [f"S{goal[1:]}"]}
-        yield f"S{goal[1:]}", {"strategy": way, "supported-by": inner}
-        for sub, (x, use) in zip(inner, matches, strict=True):
-            count += 1
-            yield sub, {"goal": use.goal.format(**x.words), "supported-by": [f"Sn{count}"]}
-            yield f"Sn{count}", _solution(x, use)
+    for number, (branch, those) in branches.items():
+        inner: dict[str, Table] = {}
+        goals: list[str] = []
+        for x in those:
+            if x.entries:
+                count += 1
+                goals.append(f"G{number}.{len(goals) + 1}")
+                shown = uses[x.kind].goal.format(**x.words)
+                inner[goals[-1]] = {"goal": shown, "supported-by": [f"Sn{count}"]}
+                inner[f"Sn{count}"] = _solution(x, uses[x.kind])
+            if x.left:
+                goals.append(f"G{number}.{len(goals) + 1}")
+                inner[goals[-1]] = {"goal": _left_text(x), "undeveloped": True}
+        yield f"G{number}", {"goal": _sentence([branch.goal]), "supported-by": [f"S{number}"]}
+        yield f"S{number}", {"strategy": branch.strategy, "supported-by": goals}
+        yield from inner.items()
 
 
-def _solution(folder: _EvidenceFolder, use: _EvidenceUse) -> Table:
-    select = {"select": (*use.select, *("lemma*",) * folder.lemmas)} if use.select else {}
-    entries = {} if folder.entries is None else {"entries": folder.entries}
+def _left_text(folder: EvidenceFolder) -> str:
+    names = f"{'; '.join(folder.left[:_MOST])}{'; …' * (len(folder.left) > _MOST)}"
+    return f"Still to be shown, of {folder.path}: {names}"
+
+
+def _listed(parts: Sequence[str]) -> str:
+    return " and ".join(filter(None, (", ".join(parts[:-1]), parts[-1])))
+
+
+def _sentence(parts: Sequence[str]) -> str:
+    """Return clauses as one sentence."""
+    text = ", and ".join(parts)
+    return text[:1].upper() + text[1:]
+
+
+def _solution(folder: EvidenceFolder, use: _EvidenceUse) -> Table:
+    select = folder.select or use.select
+    names = {"select": (*select, *("lemma*",) * folder.lemmas)} if select else {}
     return {
         "solution": use.solution.format(**folder.words),
         "evidence": folder.path,
         "expect": (*use.expect, *("PROVED",) * folder.lemmas),
-        **select,
-        **entries,
+        **names,
+        "entries": folder.entries,
     }
 
 
-def _as_toml(title: str, tables: Mapping[str, Table]) -> str:
-    """Return tables as TOML; texts are quoted as in JSON, which TOML reads alike."""
-    blocks = [f"title = {_value(title)}\n"]
+def as_toml(tables: Mapping[str, Table]) -> str:
+    """Return a case as TOML; texts are quoted as in JSON, which TOML reads alike."""
+    title = str(tables["S1"]["strategy"]).removeprefix("Argument over ")
+    blocks = [f"title = {_value(title[:1].upper() + title[1:])}\n"]
     for name, table in tables.items():
         header = f'["{name}"]' if "." in name else f"[{name}]"
         blocks.append("\n".join([header, *(f"{key} = {_value(x)}" for key, x in table.items()), ""]))

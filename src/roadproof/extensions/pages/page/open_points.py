@@ -30,9 +30,9 @@ def _of_catalogue(data: CatalogueData, number: int) -> Iterator[Point]:
     words = {x.name: x.words for x in (*data.targets, *data.gaps.targets)}
     for name in data.not_tested:
         yield NOT_TESTED, f"{name}: {words[name]}" if words.get(name) else name, whole
-    for x in data.figures:
-        if x.tested < x.total and not x.sector and x.set_name != data.set.partition(",")[0]:
-            yield NOT_TESTED, f"{x.total - x.tested} of {x.total} {x.kind} of set {x.set_name}", whole
+    for y in data.figures:
+        if y.tested < y.total and not y.sector and y.set_name != data.set.partition(",")[0]:
+            yield NOT_TESTED, f"{y.total - y.tested} of {y.total} {y.kind} of set {y.set_name}", whole
     remarks: tuple[tuple[str, Remarks], ...] = (
         ("fault", data.faults),
         ("in doubt", data.doubts),
