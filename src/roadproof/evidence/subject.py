@@ -46,8 +46,15 @@ TestedSide: TypeAlias = Literal["preventable", "unpreventable", "not covered", "
 
 @dataclass(frozen=True, kw_only=True)
 class DriverSide:
-    """The fate of a scenario that a test shows, under a driver model."""
+    """The fate of a scenario that a test shows, under a driver model.
+
+    ``gap``: the least gap that SV leaves (m); None where it touches POV or never is beside it. ``instant``,
+    ``speed``: when SV touches POV (s), and how much faster it then is (m/s).
+    """
 
     driver: str
     scenario: str
     side: TestedSide
+    gap: float | None = None
+    instant: float | None = None
+    speed: float | None = None

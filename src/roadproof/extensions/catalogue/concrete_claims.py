@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
+from typing import Final
 
 from roadproof.evidence.answer import JudgedTrace
 from roadproof.evidence.claim import Claim, On, claim_of
@@ -19,6 +20,9 @@ from roadproof.library.elaborate import read_claim
 from roadproof.questions.question import Answers, Steps
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.records import dataclass
+
+JUDGED: Final = "judged-"
+"""The prefix of names of claims about concrete tests."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,11 @@ class TestJudge:
         return judge_test(self.entry, self.formulas, self.freedom, self.drivers)
 
 
+def judged_name(test: str, set_name: str) -> str:
+    """Return the name of the claim about a concrete test in a spec set."""
+    return f"{JUDGED}{claim_stem(test)}-{set_name}"
+
+
 @dataclass(frozen=True)
 class ConcreteBatch:
     """The claims about some tests, in one spec set."""
@@ -64,7 +73,7 @@ class ConcreteBatch:
 
     def claim_name(self, entry: ConcreteTest) -> str:
         """Return the name of the claim about a test."""
-        return f"judged-{claim_stem(entry.id)}-{self.formulas.specification.set_name}"
+        return judged_name(entry.id, self.formulas.specification.set_name)
 
     def steps(self) -> Steps:
         """Yield a claim for each test."""

@@ -269,7 +269,17 @@ class CatalogueQuestion:
         how = (
             "read again" if test.fault else "judged again in dense time" if test.dense else "monitored again"
         )
-        sides = (DriverSide(driver=x.driver, scenario=x.scenario, side=x.side) for x in test.decisions)
+        sides = (
+            DriverSide(
+                driver=x.driver,
+                scenario=x.scenario,
+                side=x.side,
+                gap=x.gap,
+                instant=x.instant,
+                speed=x.speed,
+            )
+            for x in test.decisions
+        )
         return replace(
             finding,
             verdict="JUDGED",

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Unpack
+from typing import Final, Unpack
 
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.finding import Acceptance, Finding
@@ -26,6 +26,9 @@ from roadproof.runtime.files import atomic_file, utf8
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
+
+PAGE: Final = "page.html"
+"""The page in a folder of answers."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -92,7 +95,7 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
         checked = take_over(*sources.checkable, folders=sources.folders, **keywords)
     library = load_library((*named, *(checked.specs if checked else ())))
     findings = () if checked is None else checked.findings
-    context = PageContext(library, _by_file(findings), _rejected(findings))
+    context = PageContext(library, _by_file(findings), _rejected(findings), folder=target.parent)
     evidence_paths = {path.resolve() for path in sources.evidence}
     alone = [x for x in findings if Path(x.where).is_file() and Path(x.where).resolve() in evidence_paths]
     sections = sorted(
@@ -122,8 +125,8 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
 
 
 def folder_page(folder: Path) -> None:
-    """Write ``page.html`` about the answers in a folder into it."""
-    page(folder, out=folder / "page.html", title=folder.resolve().name)
+    """Write the page about the answers in a folder into it."""
+    page(folder, out=folder / PAGE, title=folder.resolve().name)
 
 
 def _provenance(checked: CheckReport | None, library: Library) -> Iterator[tuple[str, str]]:

@@ -29,6 +29,8 @@ evidence = ["brake.json"]
 id = "ALL"
 title = "A < B & \\"C\\""
 text = "All of it."
+edition = "ISO 34502:2022"
+clause = "B.2 & C"
 
 [[requirement]]
 id = "BRAKE/1 ä"
@@ -250,6 +252,28 @@ def test_a_folder_that_is_none_of_doorstop_is_refused(tmp_path: Path) -> None:
         read_requirements(tmp_path)
 
 
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("R-1.yml", "text: Yes.\nedition: '2nd'\nclause: 4.3\nother: 1\n"),
+        ("top.sdoc", "[REQUIREMENT]\nUID: R-1\nSTATEMENT: Yes.\nEDITION: 2nd\nCLAUSE: 4.3\n"),
+        ("r.toml", '[[requirement]]\nid = "R-1"\ntext = "Yes."\nedition = "2nd"\nclause = "4.3"\n'),
+    ],
+)
+def test_edition_and_clause_are_read_and_empty_where_unknown(tmp_path: Path, name: str, content: str) -> None:
+    home = tmp_path / "reqs"
+    home.mkdir()
+    (home / ".doorstop.yml").write_text("settings:\n  digits: 3\n  prefix: R\n  sep: '-'\n", "utf-8")
+    path = home if name.endswith(".yml") else home / name
+    (home / name).write_text(content, "utf-8")
+    [found] = read_requirements(path).requirements
+    assert (found.id, found.edition, found.clause) == ("R-1", "2nd", "4.3")
+    kept = [x for x in content.splitlines() if not x.lower().startswith(("edition", "clause"))]
+    (home / name).write_text("\n".join(kept) + "\n", "utf-8")
+    [found] = read_requirements(path).requirements
+    assert (found.edition, found.clause) == ("", "")
+
+
 def test_links_are_added_to_requirements_of_other_files(doorstop: Path) -> None:
     (doorstop.parent / "top.sdoc").write_text("[REQUIREMENT]\nUID: S-1\nSTATEMENT: Yes.\n", "utf-8")
     path = doorstop.parent / "links.toml"
@@ -259,6 +283,14 @@ def test_links_are_added_to_requirements_of_other_files(doorstop: Path) -> None:
     found = read_requirements(path)
     assert [x.id for x in found.requirements] == ["TOP001", "LOW001", "S-1"]
     assert found.requirements[2].links == (Link("scenario", "4"),)
+    source = '[trace]\nsource = "top.sdoc"\n[[requirement]]\nid = "S-1"\nclause = '
+    path.write_text(source + '"4.3"\n', "utf-8")
+    assert read_requirements(path).requirements[0].clause == "4.3"
+    (doorstop.parent / "top.sdoc").write_text(
+        "[REQUIREMENT]\nUID: S-1\nSTATEMENT: Yes.\nCLAUSE: 5\n", "utf-8"
+    )
+    with pytest.raises(InputError, match="clause='4.3', but the source of S-1 says '5'"):
+        read_requirements(path)
     path.write_text('[trace]\nsource = "reqs"\n[[requirement]]\nid = "S-2"\nscenarios = [4]\n', "utf-8")
     with pytest.raises(InputError, match="there is no requirement 'S-2'"):
         read_requirements(path)

@@ -298,7 +298,7 @@ def test_files_of_out_say_the_same(home: Path) -> None:
     found.save(home / "out")
     assert json.loads((home / "out" / "trace.json").read_text("utf-8")) == found.as_data()
     rows = (home / "out" / "trace.csv").read_text("utf-8").splitlines()
-    assert rows[0] == "requirement,title,kind,target,state,reason,evidence,line"
+    assert rows[0] == "requirement,title,edition,clause,kind,target,state,shows,reason,evidence,line"
     assert len(rows) == 1 + len(found.rows()) == 5
     for name in ("trace.md", "trace.html"):
         text = (home / "out" / name).read_text("utf-8")

@@ -84,6 +84,10 @@ class TracedLink:
     target: Annotated[str, Rule(least=1), Doc("As the requirement names it.")]
     state: LinkState
     reason: Reason
+    shows: Annotated[
+        tuple[str, ...],
+        Doc("What accepted evidence says in figures and names: targets of a test, margins under a driver."),
+    ]
     changes: Annotated[
         tuple[str, ...], Doc("What the link rests on and is another now, such as parameter rho: 3/5 -> 1/2.")
     ]
@@ -97,6 +101,8 @@ class TracedRequirement:
     id: Annotated[str, Rule(least=1)]
     title: str
     text: str
+    edition: Annotated[str, Doc("Of the document that it comes from; empty where unknown.")]
+    clause: Annotated[str, Doc("Of the document that it comes from; empty where unknown.")]
     parents: Annotated[tuple[str, ...], Doc("The requirements that it is a part of or derived from.")]
     place: RequirementPlace
     state: Annotated[LinkState, Doc("The worst of its links and parts; missing where it has none.")]

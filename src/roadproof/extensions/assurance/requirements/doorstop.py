@@ -9,7 +9,7 @@ from pathlib import Path
 
 from roadproof.errors import InputError
 from roadproof.extensions.assurance.answers.trace import RequirementPlace
-from roadproof.extensions.assurance.requirements.requirement import Requirement, RequirementSet, split_links
+from roadproof.extensions.assurance.requirements.requirement import Requirement, RequirementSet, with_fields
 from roadproof.extensions.assurance.requirements.yaml_file import Item, Value, read_yaml
 
 SETTINGS = ".doorstop.yml"
@@ -39,14 +39,15 @@ def _is_off(item: Mapping[str, Value], name: str) -> bool:
 
 
 def _requirement(path: Path, item: Mapping[str, Value]) -> Requirement:
-    return Requirement(
+    written = Requirement(
         path.stem,
         _text(item.get("text", "")),
         RequirementPlace(file=str(path)),
         _text(item.get("header", "")),
         tuple(x.text for x in _listed(item.get("links", ()))),
-        split_links({name: "\n".join(map(_written, _listed(value))) for name, value in item.items()}),
     )
+    fields = {name: "\n".join(map(_written, _listed(value))) for name, value in item.items()}
+    return with_fields(written, fields)
 
 
 def _text(value: Value) -> str:

@@ -14,6 +14,7 @@ from roadproof.extensions.assurance.answers.trace import LinkState
 from roadproof.extensions.assurance.requirements.checked_evidence import CheckedEvidence, Meaning, meaning_of
 from roadproof.extensions.assurance.requirements.requirement import Link
 from roadproof.extensions.drivers.models import MODELS
+from roadproof.extensions.drivers.outcome import faster_text
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.scenario_references import read_query
@@ -49,11 +50,12 @@ class Target:
 
 @dataclass(frozen=True)
 class LinkFinding:
-    """The state that one piece of evidence gives a link."""
+    """The state that one piece of evidence gives a link; ``shows``: targets or margins, for people."""
 
     evidence: CheckedEvidence
     state: LinkState
     reason: Reason = NO_REASON
+    shows: str = ""
 
 
 Values: TypeAlias = Mapping[str, Fraction]
@@ -244,7 +246,9 @@ def _findings_of_test(name: str, evidence: Sequence[CheckedEvidence]) -> Iterato
         elif checked.finding.verdict == "IMPOSSIBLE":
             yield LinkFinding(checked, LinkState.REFUTED, ReasonKind.NO_DRIVE_SHOWS())
         else:
-            yield LinkFinding(checked, _SHOWN.get(checked.finding.verdict, LinkState.UNKNOWN))
+            state = _SHOWN.get(checked.finding.verdict, LinkState.UNKNOWN)
+            is_row = checked.finding.subject is SubjectKind.TEST
+            yield LinkFinding(checked, state, shows=checked.finding.claim if is_row else "")
 
 
 @dataclass(frozen=True)
@@ -284,9 +288,8 @@ def _findings_of_driver(link: DriverLink, evidence: Sequence[CheckedEvidence]) -
             continue
         for decided in checked.finding.drivers:
             if decided.driver == link.model:
-                yield LinkFinding(
-                    checked, _side_state(decided.side, link.side), _side_reason(decided, link.side)
-                )
+                state, reason = _side_state(decided.side, link.side), _side_reason(decided, link.side)
+                yield LinkFinding(checked, state, reason, _margin_text(decided))
 
 
 def _side_state(side: TestedSide, required: str) -> LinkState:
@@ -303,6 +306,13 @@ def _side_state(side: TestedSide, required: str) -> LinkState:
 
 def _side_reason(decided: DriverSide, required: str) -> Reason:
     return NO_REASON if decided.side == required else ReasonKind.DRIVER_SIDE(decided.scenario, decided.side)
+
+
+def _margin_text(decided: DriverSide) -> str:
+    """Return the margin of a driver model: its least gap, or how fast it touches the other vehicle."""
+    if decided.instant is not None and decided.speed is not None:
+        return f"{decided.scenario}: touches at {decided.instant:g} s, {faster_text(decided.speed)}"
+    return "" if decided.gap is None else f"{decided.scenario}: least gap {decided.gap:g} m"
 
 
 def is_related(link: Link, checked: CheckedEvidence) -> bool:

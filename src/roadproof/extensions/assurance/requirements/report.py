@@ -38,9 +38,12 @@ def sheet_of(answer: TraceData) -> Sheet[LinkRow]:
         (
             Column("requirement", lambda x: x.requirement.id, look="strong"),
             Column("title", lambda x: _title_of(x.requirement)),
+            Column("edition", lambda x: x.requirement.edition),
+            Column("clause", lambda x: x.requirement.clause),
             Column("kind", lambda x: "" if x.link is None else x.link.kind),
             Column("target", lambda x: "" if x.link is None else x.link.target, look="code"),
             Column("state", lambda x: x.state, look="verdict"),
+            Column("shows", lambda x: "" if x.link is None else "; ".join(x.link.shows)),
             Column("reason", lambda x: reason_of(x.link)),
             Column("evidence", lambda x: "; ".join(_files(x.link)), "csv"),
             Column("line", lambda x: x.requirement.place.line, "csv"),
@@ -78,7 +81,7 @@ def as_lines(answer: TraceData) -> list[str]:
     for x in answer.requirements:
         rows.append([str(x.state), x.id, _title_of(x)])
         for link in x.links:
-            reason = excerpt(reason_of(link), 160)
+            reason = excerpt("; ".join(filter(None, (*link.shows, reason_of(link)))), 160)
             target = excerpt(f"{link.kind} {' '.join(link.target.split())}", 90)
             rows.append(["", "", f"  {link.state}: {target}" + (f" ({reason})" if reason else "")])
     lines = aligned(rows)
@@ -103,10 +106,12 @@ def as_markdown(answer: TraceData) -> str:
     """Return a Markdown table of the requirements, and one of evidence without a requirement."""
     lines = ["# Requirements", "", counted(answer) + ".", ""]
     lines += _table(
-        ["requirement", "state", "links", "place"],
+        ["requirement", "edition", "clause", "state", "links", "place"],
         (
             [
                 f"**{_cell(x.id)}** {_cell(_title_of(x))}",
+                _cell(x.edition),
+                _cell(x.clause),
                 str(x.state),
                 "<br>".join(map(_link, x.links)),
                 f"{_cell(x.place.file)}:{x.place.line}",
@@ -124,7 +129,7 @@ def as_markdown(answer: TraceData) -> str:
 
 
 def _link(link: TracedLink) -> str:
-    reason = _cell(reason_of(link))
+    reason = _cell("; ".join(filter(None, (*link.shows, reason_of(link)))))
     return f"{link.state}: {link.kind} `{_code(link.target)}`" + (f" ({reason})" if reason else "")
 
 

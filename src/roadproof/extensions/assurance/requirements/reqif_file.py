@@ -12,7 +12,7 @@ from pathlib import Path
 
 from roadproof.errors import InputError
 from roadproof.extensions.assurance.answers.trace import RequirementPlace
-from roadproof.extensions.assurance.requirements.requirement import Requirement, RequirementSet, split_links
+from roadproof.extensions.assurance.requirements.requirement import Requirement, RequirementSet, with_fields
 from roadproof.extensions.maps.xml_reader import Element, read_xml
 
 _IDS = ("reqif.foreignid", "id", "uid", "identifier")
@@ -51,14 +51,16 @@ def read_reqif(path: Path) -> RequirementSet:
     parents = _parents(content, names, ids)
     lines = _lines(path)
     requirements = [
-        Requirement(
-            ids[x.identifier],
-            x.first(_TEXTS),
-            RequirementPlace(file=str(path), line=lines.get(x.identifier, 1)),
-            x.first(_TITLES),
-            tuple(dict.fromkeys(ids[y] for y in parents.get(x.identifier, ()))),
-            split_links(x.values),
-            x.identifier,
+        with_fields(
+            Requirement(
+                ids[x.identifier],
+                x.first(_TEXTS),
+                RequirementPlace(file=str(path), line=lines.get(x.identifier, 1)),
+                x.first(_TITLES),
+                tuple(dict.fromkeys(ids[y] for y in parents.get(x.identifier, ()))),
+                identifier=x.identifier,
+            ),
+            x.values,
         )
         for x in objects
         if x.identifier in ids

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Final
 
 from roadproof.errors import InputError
 from roadproof.extensions.assurance.answers.trace import LinkKind, RequirementPlace
@@ -18,6 +19,10 @@ FIELDS: Mapping[str, LinkKind] = {
     "evidence": "evidence",
 }
 """The fields of a requirement that hold links, in the order of answers."""
+
+
+SOURCE_FIELDS: Final = ("edition", "clause")
+"""The fields that say where a requirement comes from."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +43,8 @@ class Requirement:
     """A requirement with its links.
 
     ``parents``: ids of the requirements that it is a part of or derived from; ``place``: where it is written.
-    ``identifier``: the identifier of its object in ReqIF, empty for other formats.
+    ``identifier``: the identifier of its object in ReqIF, empty for other formats. ``edition``, ``clause``:
+    of the document that it comes from, empty where unknown.
     """
 
     id: str
@@ -48,6 +54,8 @@ class Requirement:
     parents: tuple[str, ...] = ()
     links: tuple[Link, ...] = ()
     identifier: str = ""
+    edition: str = ""
+    clause: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,13 +149,17 @@ def place_text(place: RequirementPlace) -> str:
     return f"{place.file}, line {place.line}"
 
 
-def split_links(values: Mapping[str, str]) -> tuple[Link, ...]:
-    """Return the links in the fields of another format; a line break or ``;`` separates targets."""
-    return tuple(_split(values))
+def with_fields(requirement: Requirement, values: Mapping[str, str]) -> Requirement:
+    """Return a requirement with the links, edition and clause in the fields of another format.
 
-
-def _split(values: Mapping[str, str]) -> Iterator[Link]:
+    A line break or ``;`` separates targets of links.
+    """
     plain = {name.lower().removeprefix("roadproof").strip(" .-_"): text for name, text in values.items()}
+    edition, clause = (plain.get(x, "").strip() for x in SOURCE_FIELDS)
+    return replace(requirement, links=tuple(_split(plain)), edition=edition, clause=clause)
+
+
+def _split(plain: Mapping[str, str]) -> Iterator[Link]:
     for name, kind in FIELDS.items():
         for word in plain.get(name, "").replace(";", "\n").splitlines():
             if word.strip():

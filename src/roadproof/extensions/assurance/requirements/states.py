@@ -117,6 +117,7 @@ def _link(matched: _LinkEvidence, changes: tuple[str, ...]) -> TracedLink:
         target=matched.target.link.target,
         state=state,
         reason=reason,
+        shows=tuple(dict.fromkeys(x.shows for x in matched.shown if x.shows and x.state is state)),
         changes=changes,
         evidence=tuple(x.as_linked for x in matched.evidence),
     )
@@ -124,7 +125,15 @@ def _link(matched: _LinkEvidence, changes: tuple[str, ...]) -> TracedLink:
 
 def _traced(x: Requirement, links: Sequence[TracedLink], state: LinkState) -> TracedRequirement:
     return TracedRequirement(
-        id=x.id, title=x.title, text=x.text, parents=x.parents, place=x.place, state=state, links=tuple(links)
+        id=x.id,
+        title=x.title,
+        text=x.text,
+        edition=x.edition,
+        clause=x.clause,
+        parents=x.parents,
+        place=x.place,
+        state=state,
+        links=tuple(links),
     )
 
 

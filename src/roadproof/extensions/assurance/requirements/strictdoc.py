@@ -15,7 +15,7 @@ from roadproof.extensions.assurance.requirements.requirement import (
     Requirement,
     RequirementSet,
     place_text,
-    split_links,
+    with_fields,
 )
 from roadproof.runtime.files import read_text
 
@@ -57,13 +57,15 @@ def read_strictdoc(path: Path) -> RequirementSet:
             notes.append(f"{place_text(node.place)}: the requirement has no UID and is left out")
             continue
         requirements.append(
-            Requirement(
-                uid,
-                fields.get("STATEMENT", ""),
-                node.place,
-                fields.get("TITLE", ""),
-                tuple(dict.fromkeys(node.parents)),
-                split_links(fields),
+            with_fields(
+                Requirement(
+                    uid,
+                    fields.get("STATEMENT", ""),
+                    node.place,
+                    fields.get("TITLE", ""),
+                    tuple(dict.fromkeys(node.parents)),
+                ),
+                fields,
             )
         )
     return RequirementSet(path, tuple(requirements), notes=tuple(notes))

@@ -14,6 +14,7 @@ from roadproof.errors import InputError
 from roadproof.extensions.assurance.answers.trace import RequirementPlace
 from roadproof.extensions.assurance.requirements.requirement import (
     FIELDS,
+    SOURCE_FIELDS,
     Link,
     Requirement,
     RequirementSet,
@@ -26,7 +27,7 @@ from roadproof.world.models import LARGEST_MODEL, read_toml
 
 _HEAD = re.compile(r"(\s*)\[\[\s*requirement\s*\]\]")
 _TRACE = ("evidence", "specs", "set", "options", "parameters", "vehicles", "source")
-_REQUIREMENT = ("id", "text", "title", "parent", "derived_from", *FIELDS)
+_REQUIREMENT = ("id", "text", "title", "parent", "derived_from", *SOURCE_FIELDS, *FIELDS)
 Content = Mapping[str, object]
 
 
@@ -53,19 +54,26 @@ def read_toml_requirements(path: Path, read: Callable[[Path], RequirementSet]) -
 
 
 def _joined(sourced: list[Requirement], own: list[Requirement]) -> Iterator[Requirement]:
-    """Yield the requirements of sources with the added links. Raises ``InputError``."""
-    known = {x.id for x in sourced}
-    more: dict[str, list[Link]] = {}
+    """Yield the requirements of sources with the added links, editions and clauses. Raises ``InputError``."""
+    joined = {x.id: x for x in sourced}
     for x in own:
-        if x.id not in known:
-            raise InputError(f"{place_text(x.place)}: {unknown_name('requirement', x.id, known)}")
+        if x.id not in joined:
+            raise InputError(f"{place_text(x.place)}: {unknown_name('requirement', x.id, joined)}")
+        there = joined[x.id]
         if x.text or x.title or x.parents:
             raise InputError(
                 f"{place_text(x.place)}: the text of {x.id} is in its source; only add links here"
             )
-        more.setdefault(x.id, []).extend(x.links)
-    for x in sourced:
-        yield replace(x, links=tuple(dict.fromkeys((*x.links, *more.get(x.id, ())))))
+        for name in SOURCE_FIELDS:
+            former, new = getattr(there, name), getattr(x, name)
+            if former and new not in ("", former):
+                raise InputError(
+                    f"{place_text(x.place)}: {name}={new!r}, but the source of {x.id} says {former!r}"
+                )
+        links = tuple(dict.fromkeys((*there.links, *x.links)))
+        edition, clause = there.edition or x.edition, there.clause or x.clause
+        joined[x.id] = replace(there, links=links, edition=edition, clause=clause)
+    yield from joined.values()
 
 
 def _settings(head: Content, path: Path) -> TraceSettings:
@@ -115,6 +123,8 @@ def _requirements(content: Content, path: Path) -> Iterator[Requirement]:
                     for x in _texts(fields, name, where)
                 )
             ),
+            edition=_text(fields.get("edition", ""), f"{where}, edition").strip(),
+            clause=_text(fields.get("clause", ""), f"{where}, clause").strip(),
         )
 
 

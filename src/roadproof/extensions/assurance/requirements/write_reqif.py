@@ -5,13 +5,18 @@ from collections.abc import Iterator, Mapping
 from datetime import datetime
 
 from roadproof.extensions.assurance.answers.trace import TraceData, TracedRequirement
-from roadproof.extensions.assurance.requirements.requirement import FIELDS
+from roadproof.extensions.assurance.requirements.requirement import FIELDS, SOURCE_FIELDS
 from roadproof.extensions.maps.xml_writer import Element, document, element
 from roadproof.runtime.version import VERSION
 
 _NAMESPACE = "http://www.omg.org/spec/ReqIF/20110401/reqif.xsd"
 _XHTML = "http://www.w3.org/1999/xhtml"
-_STRINGS = ("ReqIF.ForeignID", "ReqIF.Name", "roadproof.state", *(f"roadproof.{x}" for x in FIELDS))
+_STRINGS = (
+    "ReqIF.ForeignID",
+    "ReqIF.Name",
+    "roadproof.state",
+    *(f"roadproof.{x}" for x in (*SOURCE_FIELDS, *FIELDS)),
+)
 _TEXT = "ReqIF.Text"
 _LONGEST = "100000"
 # The schema of ReqIF 1.2 allows no other REQ-IF-VERSION than 1.0.
@@ -89,6 +94,8 @@ class _ReqifWriter:
         attributes = {
             "ReqIF.ForeignID": requirement.id,
             "ReqIF.Name": requirement.title,
+            "roadproof.edition": requirement.edition,
+            "roadproof.clause": requirement.clause,
             "roadproof.state": str(requirement.state),
         } | links
         values = [_string(name, value) for name, value in attributes.items() if value]

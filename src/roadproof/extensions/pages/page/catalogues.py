@@ -15,6 +15,7 @@ from roadproof.extensions.catalogue.catalogue_data import (
     FactData,
     RequestData,
 )
+from roadproof.extensions.catalogue.concrete_claims import judged_name
 from roadproof.extensions.catalogue.report import sheet_of
 from roadproof.extensions.catalogue.settings import Catalogue
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES
@@ -36,11 +37,15 @@ MOST_FORMULAS = 6
 
 @dataclass(frozen=True)
 class _Test:
-    """A test with the facts about it; ``link``: its id on the page."""
+    """A test with the facts about it; ``link``: its id on the page, ``row``: that of its row in the table.
+
+    The row of a concrete test is called as the file of its judgement.
+    """
 
     data: ConcreteTestData | AbstractTestData
     facts: Sequence[FactData]
     link: str
+    row: str
 
     @property
     def id(self) -> str:
@@ -79,7 +84,12 @@ def catalogue(result: PageResult, context: PageContext, words: Words) -> dict[st
     data = read(CatalogueData, result.data, result.name)
     targets = (*data.targets, *data.gaps.targets)
     tests = [
-        _Test(x, [y for y in data.facts if y.test == x.id], f"test-{result.id}-{k}")
+        _Test(
+            x,
+            [y for y in data.facts if y.test == x.id],
+            f"test-{result.id}-{k}",
+            judged_name(x.id, data.set.partition(",")[0]),
+        )
         for k, x in enumerate(data.tests)
     ]
     known = {x.id for x in tests}

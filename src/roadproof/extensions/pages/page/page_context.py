@@ -68,13 +68,14 @@ class DriveCard:
 class PageContext:
     """The ``documents`` of the viewer, in order of appearance, and the ``findings`` on evidence by file.
 
-    ``rejected``: the objections to a question itself, by its path.
+    ``rejected``: the objections to a question itself, by its path. ``folder``: where the page will be.
     """
 
     library: Library
     findings: Mapping[Path, Finding] = field(default_factory=dict)
     rejected: Mapping[str, Sequence[str]] = field(default_factory=dict)
     documents: list[ViewerDocument] = field(default_factory=list)
+    folder: Path = Path()
 
     def drive(
         self,
