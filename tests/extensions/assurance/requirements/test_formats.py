@@ -289,7 +289,7 @@ def test_links_are_added_to_requirements_of_other_files(doorstop: Path) -> None:
     (doorstop.parent / "top.sdoc").write_text(
         "[REQUIREMENT]\nUID: S-1\nSTATEMENT: Yes.\nCLAUSE: 5\n", "utf-8"
     )
-    with pytest.raises(InputError, match="clause='4.3', but the source of S-1 says '5'"):
+    with pytest.raises(InputError, match=r"clause='4\.3', but the source of S-1 says '5'"):
         read_requirements(path)
     path.write_text('[trace]\nsource = "reqs"\n[[requirement]]\nid = "S-2"\nscenarios = [4]\n', "utf-8")
     with pytest.raises(InputError, match="there is no requirement 'S-2'"):
