@@ -67,7 +67,7 @@ class Catalogue(groups.SeveralSets, groups.Models, groups.BudgetSettings, groups
         read=driver_models_or_none,
     )
     effort: float = groups.effort_for("a drive", 60.0)
-    out: str | Path | None = groups.folder_for("matrix, JUnit, picture, evidence")
+    out: str | Path | None = groups.folder_for("page, matrix, JUnit, evidence")
     pictures: bool = groups.pictures_of("picture", command_line_only=True)
     complete: Path | None = output(
         None,

@@ -175,7 +175,7 @@ class EvidenceFolder:
                 left = () if is_shown else (f"{data.text('verdict')} for set {data.text('set')}",)
                 words = {"set": data.text("set")}
                 return EvidenceFolder(path, kind, words, entries=_count(stored) * is_shown, left=left)
-            case _:
+            case _:  # open: kinds of answers whose claims count one by one, or are refused
                 return _folder_of_claims(path, kind, data, stored)
 
 

@@ -31,7 +31,7 @@ tests:
 examples:
   roadproof catalogue tests                            which scenarios are tested, and which are not
   roadproof catalogue tests --complete more            drives for the others, as tests in the folder more
-  roadproof catalogue tests more --out report          matrix.csv, junit.xml, a picture, evidence
+  roadproof catalogue tests more --out report          page.html, matrix.csv, junit.xml, evidence
   roadproof catalogue tests --roles any --lanes any --start any
   roadproof catalogue tests --gaps                     and gaps: danger that no scenario covers, in classes
   roadproof catalogue tests --complete more --spread 3 --format openscenario,csv

@@ -1,4 +1,4 @@
-"""What results leave open: untested situations, faulty and doubtful tests, and what a reader left out."""
+"""The open points of results: untested situations, faulty and doubtful tests, and what a reader left out."""
 
 from collections.abc import Iterator
 from typing import Final, TypeAlias
