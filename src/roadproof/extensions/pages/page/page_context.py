@@ -5,13 +5,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from roadproof.errors import RoadproofError
-from roadproof.evidence.drive_file import DriveFile, read_drive
+from roadproof.evidence.drive_file import DriveFile, drive_data, read_drive
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.strict import read_json
 from roadproof.extensions.pages.miniature import miniature, small_scene
 from roadproof.extensions.pages.viewer_data import ShownFormula, viewer_data
 from roadproof.extensions.pages.viewer_document import FormulaView, TruthSpan, ViewerDocument
 from roadproof.library.specification import Library
+from roadproof.questions.foreign_code import all_foreign_code
+from roadproof.runtime.cache import cached
+from roadproof.runtime.canonical import digest
+from roadproof.runtime.package_data import program_digest
 
 MOST_STRIPS = 14
 _NEARLY = 1e-6  # s: instants are told with so many digits
@@ -95,13 +99,26 @@ class PageContext:
         try:
             content = read_json(file) if isinstance(file, Path) else file
             drive = adapt(read_drive(content, str(file) if isinstance(file, Path) else "the drive"))
-            document = viewer_data(drive, self.library, formulas)
-            svg = miniature(small_scene(drive, self.library), f"m{len(self.documents)}", document.title)
+            document, svg = self._drawn(drive, formulas)
         except (RoadproofError, OSError) as error:
             return PageDrive(fault=str(error))
         self.documents.append(document)
         wrong = [_failure(x, at) for x, at in zip(document.formulas, hold_at, strict=False)]
         return PageDrive(len(self.documents) - 1, document, [x for x in wrong if x], svg)
+
+    def _drawn(self, drive: DriveFile, formulas: Sequence[ShownFormula]) -> tuple[ViewerDocument, str]:
+        """Return the document and the small picture of a drive, from the cache where nothing has changed."""
+        name = f"m{len(self.documents)}"
+
+        def make() -> tuple[ViewerDocument, str]:
+            document = viewer_data(drive, self.library, formulas)
+            return document, miniature(small_scene(drive, self.library), name, document.title)
+
+        if any(x.specification is not None for x in formulas):
+            return make()
+        content = digest(drive_data(drive, {}), formulas)
+        here = digest(self.library.fingerprint, self.library.titles, program_digest(), *all_foreign_code())
+        return cached("viewer", f"{name} {content} {here}".encode(), make)
 
     def is_drive(self, file: Path) -> bool:
         """Return whether a file of evidence is a drive."""
