@@ -3,13 +3,14 @@
 import argparse
 import dataclasses
 import inspect
+import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from functools import partial
-from numbers import Integral
+from numbers import Integral, Real
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self, TypeAlias, TypeVar
 
 from roadproof.errors import UsageError
 from roadproof.extension import extension_error, import_entry, named_entries, owner_of
@@ -112,7 +113,7 @@ class Settings:
     @classmethod
     def of(cls, given: Mapping[str, object]) -> Self:
         """The settings that keyword arguments give. Raises ``TypeError``, ``UsageError``."""
-        known, several = cls.options(), _lists(cls)
+        known, kinds = cls.options(), _kinds_of(cls)
         for name, value in given.items():
             if name not in known or not known[name].keyword:
                 near = get_close_matches(name, [x for x in known if known[x].keyword], n=1)
@@ -121,9 +122,10 @@ class Settings:
                 raise TypeError(f"{function}() got an unexpected keyword argument {name!r}{hint}")
             if value is not getattr(cls, name):
                 known[name].check(name, value)
-                if name in several and (isinstance(value, str) or not isinstance(value, Iterable)):
+                if kinds[name] and not any(kind.fits(value) for kind in kinds[name]):
                     shown = repr(value)[:60]
-                    raise UsageError(f"{name}={shown}: write a list, such as {name}=[{shown}]")
+                    told = " or ".join(kind.told.format(name=name, value=shown) for kind in kinds[name])
+                    raise UsageError(f"{name}={shown}: write {told}")
         return cls(**given)
 
 
@@ -175,10 +177,40 @@ def _check_new(added: type[Settings], former: type[Settings], entry: str, comman
             )
 
 
-def _lists(settings: type[Settings]) -> set[str]:
-    """The options that take several values, and none by itself."""
-    fields = dataclasses.fields(settings)
-    return {x.name for x in fields if str(x.type).startswith(("Iterable", "Sequence"))}
+class _Kind(NamedTuple):
+    """Whether a value is of a kind, and how to write one."""
+
+    fits: Callable[[object], bool]
+    told: str
+
+
+_LIST = _Kind(
+    lambda x: isinstance(x, Iterable) and not isinstance(x, str | bytes | Mapping),
+    "a list, such as {name}=[{value}]",
+)
+_KINDS: Mapping[str, _Kind] = {
+    "Mapping": _Kind(lambda x: isinstance(x, Mapping), "a mapping of names to values"),
+    "Iterable": _LIST,
+    "Sequence": _LIST,
+    "tuple": _LIST,
+    "bool": _Kind(lambda x: isinstance(x, bool), "True or False"),
+    "int": _Kind(lambda x: isinstance(x, Integral) and not isinstance(x, bool), "a whole number"),
+    "float": _Kind(lambda x: isinstance(x, Real) and not isinstance(x, bool), "a number"),
+    "str": _Kind(lambda x: isinstance(x, str), "a text"),
+    "Path": _Kind(lambda x: isinstance(x, os.PathLike), "a path"),
+}
+"""The kinds of values by the name of their type; values of other types are checked where they are read."""
+
+
+def _kinds_of(settings: type[Settings]) -> dict[str, tuple[_Kind, ...]]:
+    """The kinds of values that each option takes; none where some of its types are checked elsewhere."""
+    made: dict[str, tuple[_Kind, ...]] = {}
+    for x in dataclasses.fields(settings):
+        written = x.type.__name__ if isinstance(x.type, type) else str(x.type)
+        names = [y.strip().rpartition(".")[2] for y in re.sub(r"\[.*\]", "", written).split("|")]
+        kinds = tuple(_KINDS[name] for name in names if name in _KINDS)
+        made[x.name] = kinds if len(kinds) == len([y for y in names if y != "None"]) else ()
+    return made
 
 
 def takes(settings: type[Settings]) -> Callable[[F], F]:

@@ -43,7 +43,8 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.extensions.surveys.exploring import Explorations, explore_question
 
     named, ranges = some_or_all(args), [_varied(text) for text in args.vary or ()]
-    given = Explore.of(study_keywords(args, Explore, beside_json=True))
+    vary = {name: (low, high) for name, low, high in ranges} or None
+    given = Explore.of(study_keywords(args, Explore, beside_json=True) | {"vary": vary})
     home = read_definitions(args, Explore)
     what = home.each(named)
     home = given.modified(home, what=what)
