@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Final
@@ -118,6 +118,16 @@ class SearchResult:
     def natural(self) -> bool:
         """Return whether the first drive was found among natural ones."""
         return bool(self.drives) and bool(self.drives[0].natural)
+
+    @cached_property
+    def wishes(self) -> tuple[Mapping[str, bool], ...]:
+        """For each drive, the wishes of the objective ``typical``, and whether it fulfils them."""
+        if self.task.within.objective != "typical" or not self.drives:
+            return ()
+        from roadproof.engines.search.wishes import fulfilled_wishes  # here: other objectives have none
+
+        library = self.task.specification.library
+        return tuple(fulfilled_wishes(self.query, drive.file, library) for drive in self.drives)
 
     @property
     def certificate(self) -> Certificate | None:
