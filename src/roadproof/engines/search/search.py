@@ -253,10 +253,10 @@ class _GridSearch:
         )
         if natural:
             yield natural
+            if self.question.starts is not None:
+                yield [replace(assumptions, starts=self.question.starts) for assumptions in natural]
         if self.only_natural:
             return
-        if natural and self.question.starts is not None:
-            yield [replace(assumptions, starts=self.question.starts) for assumptions in natural]
         yield [replace(self.question.assumptions.without_comfort(), starts=self.question.starts)]
 
     def _straightest(self) -> Iterator[Assumptions]:
