@@ -175,10 +175,10 @@ def plain(formula):
 
 
 def time_wish(formula):
-    scene = wishes.Scene(
+    claim = wishes.ClaimOnRoad(
         formula, (), load_road("main-2"), default_values(LIBRARY), Fraction(6), wishes.LEAST, Fraction(5)
     )
-    return next(x for x in WISHES if x.name == TIME).formula(scene)
+    return next(x for x in WISHES if x.name == TIME).formula(claim)
 
 
 # --- an independent reading of generated drives -----------------------------------------------------

@@ -121,7 +121,7 @@ class SearchResult:
 
     @cached_property
     def wishes(self) -> tuple[Mapping[str, bool], ...]:
-        """For each drive, the wishes of the objective ``typical``, and whether it fulfils them."""
+        """The wishes of the objective ``typical`` for each drive, and whether it fulfils them."""
         if self.task.within.objective != "typical" or not self.drives:
             return ()
         from roadproof.engines.search.wishes import fulfilled_wishes  # here: other objectives have none

@@ -21,7 +21,7 @@ from roadproof.logic.formula import Compare, Formula, Interval
 from roadproof.logic.rewrite import bounds_of, with_values, without_names
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.judging import judge
-from roadproof.world.road import Attribute, Road
+from roadproof.world.road import Attribute, Lanelet, Road
 
 NEAR: Final = Fraction(1, 2)
 """How far from the centre of a lane its middle reaches (m)."""
@@ -34,7 +34,7 @@ Extent = tuple[Fraction | None, Fraction | None]
 
 
 @dataclass(frozen=True)
-class Scene:
+class ClaimOnRoad:
     """A formula, with the road and the parameter values (SI) with which it is read.
 
     Times in s: ``end`` of the search; ``least``: how long states last; ``late``: shortly before the end.
@@ -51,33 +51,32 @@ class Scene:
 
 @dataclass(frozen=True)
 class Wish:
-    """A wish: its name, how a drive fulfils it, and its formula in a scene.
+    """A wish: its name, how a drive fulfils it, and its formula in a claim.
 
-    The formula is ``TRUE`` where the wish says nothing about a scene.
+    The formula is ``TRUE`` where the wish says nothing about a claim.
     """
 
     name: str
     meaning: str
-    formula: Callable[[Scene], Formula]
+    formula: Callable[[ClaimOnRoad], Formula]
 
 
 def wished_formulas(query: Query, road: Road, values: Mapping[str, Fraction], grid: Grid) -> list[Formula]:
     """Return the formulas of all wishes that say something, for a search on a grid."""
     end, dt = grid.horizon, grid.dt
     least = ceil(LEAST / dt) * dt
-    late = max(
-        Fraction(0), min(ceil((end - LEAST) / dt) * dt, end - dt)
-    )  # the last sample stands for all later
-    scene = Scene(query.formula, query.vehicles, road, values, end, least, late)
-    return [x for wish in WISHES if (x := wish.formula(scene)) != f.TRUE]
+    before_last = min(ceil((end - LEAST) / dt) * dt, end - dt)  # the last sample stands for all later
+    late = max(Fraction(0), before_last)
+    claim = ClaimOnRoad(query.formula, query.vehicles, road, values, end, least, late)
+    return [x for wish in WISHES if (x := wish.formula(claim)) != f.TRUE]
 
 
 def fulfilled_wishes(query: Query, file: DriveFile, library: Library) -> dict[str, bool]:
     """Return for each wish that says something whether a drive fulfils it, by its name."""
     values, end = values_with(library, file.values), file.horizon
     late = max(Fraction(0), end - LEAST)
-    scene = Scene(query.formula, query.vehicles, file.road, values, end, LEAST, late)
-    formulas = {wish.name: wish.formula(scene) for wish in WISHES}
+    claim = ClaimOnRoad(query.formula, query.vehicles, file.road, values, end, LEAST, late)
+    formulas = {wish.name: wish.formula(claim) for wish in WISHES}
     return {
         name: judge(without_empty_windows(bind(formula, file.road, file.lanes, values)), file.drive).holds
         for name, formula in formulas.items()
@@ -85,30 +84,30 @@ def fulfilled_wishes(query: Query, file: DriveFile, library: Library) -> dict[st
     }
 
 
-def _uses_ramp(scene: Scene) -> Formula:
+def _uses_ramp(claim: ClaimOnRoad) -> Formula:
     """Return that a vehicle leaves a merge lane, or enters a departure lane, of a zone in the formula."""
-    leaves = [_changes(x, lane, True) for lane in _ramps(scene, "merge") for x in scene.vehicles]
-    enters = [_changes(x, lane, False) for lane in _ramps(scene, "departure") for x in scene.vehicles]
+    leaves = [_changes(x, ramp, True) for ramp in _ramps(claim, "merge") for x in claim.vehicles]
+    enters = [_changes(x, ramp, False) for ramp in _ramps(claim, "departure") for x in claim.vehicles]
     return f.disjunction(*leaves, *enters) if leaves or enters else f.TRUE
 
 
-def _ramps(scene: Scene, attribute: Attribute) -> list[str]:
-    """Return the lanes with an attribute that have lanelets in a zone of the formula."""
-    zones = zones_of(scene.formula)
-    lanelets = (x for x in scene.road.lanelets if x.attribute == attribute and x.zone in zones)
-    return [*dict.fromkeys(x.lane for x in lanelets)]
+def _ramps(claim: ClaimOnRoad, attribute: Attribute) -> list[tuple[Lanelet, ...]]:
+    """Return the lanelets of each lane with an attribute that has lanelets in a zone of the formula."""
+    zones = zones_of(claim.formula)
+    lanelets = (x for x in claim.road.lanelets if x.attribute == attribute and x.zone in zones)
+    return [claim.road.lanelets_of(lane) for lane in dict.fromkeys(x.lane for x in lanelets)]
 
 
-def _changes(vehicle: str, lane: str, leaves: bool) -> Formula:
+def _changes(vehicle: str, ramp: Iterable[Lanelet], leaves: bool) -> Formula:
     """Return that a vehicle begins in a lane and leaves it, or begins elsewhere and enters it."""
-    inside = f.Some("l", f.Domain("lanelets", lane), f.Occupies(vehicle, "l"))
+    inside = f.disjunction(*(f.Occupies(vehicle, x.id) for x in ramp))
     before, after = (inside, f.negation(inside)) if leaves else (f.negation(inside), inside)
     return f.conjunction(before, f.Eventually(f.FOREVER, after))
 
 
-def _begins_in_order(scene: Scene) -> Formula:
+def _begins_in_order(claim: ClaimOnRoad) -> Formula:
     """Return that two vehicles begin in the order along the road that the formula requires later only."""
-    orders = [*_orders(scene.formula, False)]
+    orders = [*_orders(claim.formula, False)]
     now = {_pair(x) for x, later in orders if not later}
     return f.conjunction(*dict.fromkeys(x for x, later in orders if later and _pair(x) not in now))
 
@@ -144,11 +143,11 @@ def _pair(comparison: Compare) -> frozenset[str]:
     return frozenset() if rest else frozenset(places)
 
 
-def _in_middles(scene: Scene) -> Formula:
+def _in_middles(claim: ClaimOnRoad) -> Formula:
     """Return that each vehicle begins in the middle of a lane and is in one from the end of the search on."""
-    bands = dict.fromkeys(x.d for x in scene.road.lanelets)
-    inside = f.conjunction(*(f.disjunction(*(_in_middle(x, band) for band in bands)) for x in scene.vehicles))
-    return f.conjunction(inside, f.Always(Interval(_seconds(scene.end), None), inside))
+    bands = dict.fromkeys(x.d for x in claim.road.lanelets)
+    inside = f.conjunction(*(f.disjunction(*(_in_middle(x, band) for band in bands)) for x in claim.vehicles))
+    return f.conjunction(inside, f.Always(Interval(_seconds(claim.end), None), inside))
 
 
 def _in_middle(vehicle: str, band: tuple[Fraction, Fraction]) -> Formula:
@@ -161,9 +160,9 @@ def _in_middle(vehicle: str, band: tuple[Fraction, Fraction]) -> Formula:
     )
 
 
-def _lasts(scene: Scene) -> Formula:
+def _lasts(claim: ClaimOnRoad) -> Formula:
     """Return the formula with a longer time for each state that it requires for a shorter one."""
-    plain = without_names(with_values(scene.formula, scene.values))
+    plain = without_names(with_values(claim.formula, claim.values))
 
     @cache
     def longer(formula: Formula, positive: bool) -> Formula:
@@ -172,21 +171,21 @@ def _lasts(scene: Scene) -> Formula:
         changed = f.with_children(formula, tuple(longer(x, inner) for x in f.children(formula)))
         if positive and isinstance(changed, f.Always):
             low, high = bounds_of(changed.interval)
-            if high is not None and low <= high < low + scene.least:
-                return f.Always(Interval(changed.interval.low, _seconds(low + scene.least)), changed.body)
+            if high is not None and low <= high < low + claim.least:
+                return f.Always(Interval(changed.interval.low, _seconds(low + claim.least)), changed.body)
         return changed
 
     changed = longer(plain, True)
     return f.TRUE if changed == plain else changed
 
 
-def _stays_inside(scene: Scene) -> Formula:
+def _stays_inside(claim: ClaimOnRoad) -> Formula:
     """Return that all vehicles stay in zones of the formula, away from edges, until late in the search."""
-    extents = [*_extents(scene.road, zones_of(scene.formula))]
+    extents = [*_extents(claim.road, zones_of(claim.formula))]
     if not extents:
         return f.TRUE
-    inside = f.conjunction(*(f.disjunction(*(_inside(x, y) for y in extents)) for x in scene.vehicles))
-    return inside if inside == f.TRUE else f.Always(Interval(f.ZERO, _seconds(scene.late)), inside)
+    inside = f.conjunction(*(f.disjunction(*(_inside(x, y) for y in extents)) for x in claim.vehicles))
+    return inside if inside == f.TRUE else f.Always(Interval(f.ZERO, _seconds(claim.late)), inside)
 
 
 def _extents(road: Road, zones: Iterable[str]) -> Iterator[Extent]:
