@@ -120,14 +120,15 @@ class SearchResult:
         return bool(self.drives) and bool(self.drives[0].natural)
 
     @cached_property
-    def wishes(self) -> tuple[Mapping[str, bool], ...]:
-        """The wishes of the objective ``typical`` for each drive, and whether it fulfils them."""
+    def wishes(self) -> Mapping[str, tuple[bool, ...]]:
+        """The wishes of the objective ``typical`` by name, and for each drive whether it fulfils them."""
         if self.task.within.objective != "typical" or not self.drives:
-            return ()
+            return {}
         from roadproof.engines.search.wishes import fulfilled_wishes  # here: other objectives have none
 
         library = self.task.specification.library
-        return tuple(fulfilled_wishes(self.query, drive.file, library) for drive in self.drives)
+        judged = [fulfilled_wishes(self.query, drive.file, library) for drive in self.drives]
+        return {name: tuple(x[name] for x in judged) for name in judged[0]}
 
     @property
     def certificate(self) -> Certificate | None:

@@ -42,12 +42,10 @@ class ResultData:
     natural: Annotated[bool, Doc("Whether the first drive was found among natural ones.")]
     drives: tuple[Annotated[object, EvidenceSchema("drive.json")], ...]
     wishes: Annotated[
-        tuple[Mapping[str, bool], ...],
+        Mapping[str, tuple[bool, ...]],
         LEFT_OUT,
-        Doc(
-            "Of the objective typical only: for each drive, the wishes by name, and whether it fulfils them."
-        ),
-    ] = ()
+        Doc("Of the objective typical only: wishes by name, and for each drive whether it fulfils them."),
+    ] = field(default_factory=dict)
     limits: Annotated[shared.LimitsField | None, LEFT_OUT, Doc("Of a NONE-WITHIN only.")] = None
     core: Annotated[tuple[str, ...], LEFT_OUT, Doc("Of an IMPOSSIBLE only: parts that clash.")] = ()
     certificate: Annotated[

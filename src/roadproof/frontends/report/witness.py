@@ -51,10 +51,8 @@ def as_line(outcome: SearchResult, verbose: bool = False) -> str:
 
 def _wish_lines(outcome: SearchResult) -> Iterator[str]:
     """Yield a line of the wishes that all drives fulfil, and a line of the others, where there are any."""
-    names = dict.fromkeys(name for wishes in outcome.wishes for name in wishes)
-    fulfilled = {name: all(wishes[name] for wishes in outcome.wishes) for name in names}
     for heading, value in (("typical", True), ("not typical", False)):
-        listed = [name for name in names if fulfilled[name] == value]
+        listed = [name for name, drives in outcome.wishes.items() if all(drives) == value]
         if listed:
             yield f"{heading}: {', '.join(listed)}"
 
