@@ -1,4 +1,4 @@
-"""Drives of all 24 scenarios in the three sets, found by ``witness --all --objective smooth``.
+"""Drives of all 24 scenarios in the three sets, found by ``witness`` without wishes.
 
 Made by ``roadproof witness --all --objective smooth --set base,extA,ext --no-pictures``, one a line.
 """
