@@ -16,7 +16,7 @@ EXAMPLES = sorted(x for x in ROOT.glob("examples/*/README.md") if x.parent.name 
 TUTORIALS = ("first-scenario", "catalogue", "recordings", "careful-driver")
 GUIDES = (
     *("interop", "requirements", "signals", "rss", "roads", "solvers", "terminal", "recordings"),
-    *("certificates", "c", "assurance", "maps", "surveys"),
+    *("certificates", "c", "assurance", "maps", "surveys", "typical"),
 )
 PAGES = [
     *sorted(Path(__file__).parent.joinpath("book").glob("*.md")),

@@ -80,7 +80,7 @@ OPTIONAL = {
     "redundancy.json": {"road"},
     "traffic-results.json": {"drivers"},
     "verdicts.json": {"limits", "road", "doubt"},
-    "witness.json": {"limits"},
+    "witness.json": {"limits", "wishes"},
 }
 # What is read as its question, judge or road says.
 OPEN = {"question.json": ("asked",), "judged.json": ("shows",), "refutation.json": ("trace",)}
@@ -90,7 +90,7 @@ MAPS = {
     *("together", "notes", "failed", "elsewhere", "situations", "begins", "covered", "start"),
     "open",
     *("fixed", "at"),
-    *("not_checked", "sets", "parts", "counts"),
+    *("not_checked", "sets", "parts", "counts", "wishes"),
 }
 Place = tuple[str | int, ...]
 Run = Callable[..., Any]

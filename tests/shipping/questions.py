@@ -80,7 +80,7 @@ def count_shares(jobs: int | None = None) -> Texts:
 
 def _questions() -> Mapping[str, Ask]:
     found: dict[str, Ask] = {"prove": rp.prove}
-    for objective in ("smooth", "mild", "severe"):
+    for objective in ("typical", "smooth", "mild", "severe"):
         found[f"witness --objective {objective}"] = lambda x=objective, **more: rp.witness(
             using=rp.load(*SETS), objective=x, **more
         )

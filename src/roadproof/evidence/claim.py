@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from roadproof.evidence.drive_file import DriveFile
     from roadproof.world.vehicle import Vehicle
 
-Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
+Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short", "typical"]
 Engine: TypeAlias = Literal["milp", "smt"]
 HELP: Final = "help-"
 """The prefix of names of auxiliary claims; an UNKNOWN for one of them leaves the question decided."""

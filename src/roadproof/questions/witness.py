@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Final
@@ -118,6 +118,17 @@ class SearchResult:
     def natural(self) -> bool:
         """Return whether the first drive was found among natural ones."""
         return bool(self.drives) and bool(self.drives[0].natural)
+
+    @cached_property
+    def wishes(self) -> Mapping[str, tuple[bool, ...]]:
+        """The wishes of the objective ``typical`` by name, and for each drive whether it fulfils them."""
+        if self.task.within.objective != "typical" or not self.drives:
+            return {}
+        from roadproof.engines.search.wishes import fulfilled_wishes  # here: other objectives have none
+
+        library = self.task.specification.library
+        judged = [fulfilled_wishes(self.query, drive.file, library) for drive in self.drives]
+        return {name: tuple(x[name] for x in judged) for name in judged[0]}
 
     @property
     def certificate(self) -> Certificate | None:

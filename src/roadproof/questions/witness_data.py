@@ -41,6 +41,11 @@ class ResultData:
     reason: shared.Reason
     natural: Annotated[bool, Doc("Whether the first drive was found among natural ones.")]
     drives: tuple[Annotated[object, EvidenceSchema("drive.json")], ...]
+    wishes: Annotated[
+        Mapping[str, tuple[bool, ...]],
+        LEFT_OUT,
+        Doc("Of the objective typical only: wishes by name, and for each drive whether it fulfils them."),
+    ] = field(default_factory=dict)
     limits: Annotated[shared.LimitsField | None, LEFT_OUT, Doc("Of a NONE-WITHIN only.")] = None
     core: Annotated[tuple[str, ...], LEFT_OUT, Doc("Of an IMPOSSIBLE only: parts that clash.")] = ()
     certificate: Annotated[
@@ -112,6 +117,7 @@ def result_data(x: SearchResult) -> ResultData:
         reason=x.reason,
         natural=x.natural,
         drives=tuple(judged.as_data() for judged in x.drives),
+        wishes=x.wishes,
         limits=x.limits,
         core=x.core_texts,
         certificate=None if proof is None else certificate_data(replace(proof, tableau=None)),

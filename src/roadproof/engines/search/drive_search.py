@@ -99,7 +99,9 @@ def _attempt(question: SearchProblem, search: Search, objections: list[str]) -> 
     if search.unlike or search.scenario is None or search.setting.road is not None:
         return find_witness(question, search.search_options, search.unlike)
     started, options = search.search_options.effort.meter(), search.search_options
-    sibling = drive_of_twin(search.specification, search.scenario, question, search.setting, options)
+    sibling = None
+    if options.objective != "typical":  # what is typical depends on the road
+        sibling = drive_of_twin(search.specification, search.scenario, question, search.setting, options)
     if sibling is None and options.effort.timeout is not None:
         options = replace(options, effort=Effort(options.effort.units, started.seconds_left()))
     return sibling or find_once(question, options)

@@ -19,12 +19,13 @@ from roadproof.engines.search.initial_conditions import differs_from, encode_sta
 from roadproof.engines.search.limits import SearchLimits
 from roadproof.engines.search.question import FoundDrive, SearchProblem
 from roadproof.engines.search.shape import reshape, round_drive, violation_depths
+from roadproof.engines.search.wishes import wished_formulas
 from roadproof.engines.setting import SearchOptions
 from roadproof.engines.solve.bounds import TooNonlinearError
 from roadproof.engines.solve.exact import solve_exactly
 from roadproof.engines.solve.milp import column_box, solve_mixed
 from roadproof.errors import UsageError
-from roadproof.logic.formula import Formula
+from roadproof.logic.formula import Formula, conjunction
 from roadproof.reasons import NO_REASON, Reason, ReasonKind
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.progress import report_stage
@@ -37,6 +38,7 @@ from roadproof.world.drive import Drive
 # Units of work: the least for one exact search, and the most for one way to show that there is no drive.
 LEAST_EXACT = 2.0
 REFUTING = 20.0
+WISHING = 10.0  # for one search for a drive that fulfils wishes, too
 STARTS = 12  # for each assignment of lanes
 
 
@@ -72,6 +74,8 @@ def find_witness(
             return _search_from_starts(question, parts, search_options, unlike)
     if search_options.objective == "short":
         return _search_shortest(question, search_options, unlike)
+    if search_options.objective == "typical" and question.start is None:
+        return _search_typical(question, search_options, unlike)
     return _GridSearch(question, search_options, unlike).run()
 
 
@@ -144,6 +148,35 @@ def _search_shortest(
     return best
 
 
+def _search_typical(
+    question: SearchProblem, search_options: SearchOptions, unlike: tuple[Drive, ...]
+) -> SearchStep:
+    """Find a drive that fulfils all wishes, else one that fulfils those that are found together in turn.
+
+    Wishes decide which drive is found, and never whether one is found.
+    """
+    units = min(WISHING, search_options.effort.units)
+    effort = search_options.effort.with_units(units)
+    brief = replace(search_options, effort=effort, refinements=1, explain=False)
+    wishes = wished_formulas(question.query, question.road, question.values, question.grid)
+
+    def with_wishes(chosen: Sequence[Formula]) -> SearchStep:
+        """Search among natural drives for one that fulfils some wishes, too."""
+        query = replace(question.query, formula=conjunction(question.query.formula, *chosen))
+        return _GridSearch(replace(question, query=query), brief, unlike, only_natural=True).run()
+
+    typical = with_wishes(wishes) if wishes else None
+    if typical is not None and typical.witness is not None:
+        return typical
+    best = _GridSearch(question, search_options, unlike).run()
+    chosen: list[Formula] = []
+    for wish in wishes if best.witness is not None else ():
+        attempt = with_wishes([*chosen, wish]) if len(chosen) + 1 < len(wishes) else None
+        if attempt is not None and attempt.witness is not None:
+            best, chosen = attempt, [*chosen, wish]
+    return best
+
+
 def complaint_about(
     question: SearchProblem, formula: Formula, drive: Drive, grid: Grid, assumptions: Assumptions
 ) -> Reason | None:
@@ -163,9 +196,14 @@ class _GridSearch:
     """One search over assignments of lanes, grids and assumptions."""
 
     def __init__(
-        self, question: SearchProblem, search_options: SearchOptions, unlike: tuple[Drive, ...]
+        self,
+        question: SearchProblem,
+        search_options: SearchOptions,
+        unlike: tuple[Drive, ...],
+        only_natural: bool = False,
     ) -> None:
         self.question = question
+        self.only_natural = only_natural
         self.search_options = search_options
         self.unlike = unlike
         self.seconds: dict[str, float] = {}
@@ -217,6 +255,8 @@ class _GridSearch:
             yield natural
             if self.question.starts is not None:
                 yield [replace(assumptions, starts=self.question.starts) for assumptions in natural]
+        if self.only_natural:
+            return
         yield [replace(self.question.assumptions.without_comfort(), starts=self.question.starts)]
 
     def _straightest(self) -> Iterator[Assumptions]:

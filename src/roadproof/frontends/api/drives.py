@@ -200,7 +200,8 @@ def witness(
 
     A text such as "1,3-8" stands for several scenarios. Where, with whom and for how long: see ``setting``.
     ``count`` clearly different drives are looked for.
-    ``objective``: what a drive should be like: any, smooth, margin, mild, severe or short. ``preventable``,
+    ``objective``: what a drive should be like: typical, any, smooth, margin, mild, severe or short; the
+    ``wishes`` of an outcome say how a drive is typical. ``preventable``,
     ``unpreventable``: the name of a driver model, for scenarios that begin with a manoeuvre whose collision
     it prevents, or cannot prevent . ``effort``: units
     of work for a search, each about a second of a solver; ``timeout``: seconds after which the clock ends it.

@@ -33,6 +33,7 @@ def as_line(outcome: SearchResult, verbose: bool = False) -> str:
     if outcome.scenario is not None:
         name = words_of(outcome.task.specification, outcome.scenario).name
         shown += f"\n  {name}" if name else ""
+    shown += "".join(f"\n  {line}" for line in _wish_lines(outcome))
     formula = outcome.query.formula
     shown += "".join(f"\n  {text}" for text in (*freedom_lines(formula), *first_instant_warnings(formula)))
     if outcome.reason:
@@ -46,6 +47,14 @@ def as_line(outcome: SearchResult, verbose: bool = False) -> str:
         stages = ", ".join(f"{k} {v:.3f}" for k, v in spent.items())
         shown += f"\n  seconds {stages}" if stages else ""
     return shown
+
+
+def _wish_lines(outcome: SearchResult) -> Iterator[str]:
+    """Yield a line of the wishes that all drives fulfil, and a line of the others, where there are any."""
+    for heading, value in (("typical", True), ("not typical", False)):
+        listed = [name for name, drives in outcome.wishes.items() if all(drives) == value]
+        if listed:
+            yield f"{heading}: {', '.join(listed)}"
 
 
 def sheet_of(searches: Sequence[SearchResult]) -> Sheet[SearchResult]:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from roadproof.semantics.sampled.answers import Convention
 
 
-OBJECTIVES = ("any", "smooth", "margin", "mild", "severe", "short")
+OBJECTIVES = ("any", "smooth", "margin", "mild", "severe", "short", "typical")
 """What a drive can be like (``engines.search.question.Objective``)."""
 
 

@@ -38,9 +38,9 @@ class Witness(groups.DriveSearch):
     """Options of ``witness``."""
 
     objective: Objective = option(
-        "smooth",
+        "typical",
         "--objective KIND",
-        "any, smooth (default), margin, mild, severe or short",
+        "typical (default), any, smooth, margin, mild, severe or short",
         choices=groups.OBJECTIVES,
         rare=True,
     )

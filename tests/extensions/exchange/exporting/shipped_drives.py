@@ -1,6 +1,6 @@
-"""Drives of all 24 scenarios in the three sets, found by ``witness --all`` and stored one a line.
+"""Drives of all 24 scenarios in the three sets, found by ``witness`` without wishes.
 
-Made by ``roadproof witness --all --set base,extA,ext --no-pictures``, one a line.
+Made by ``roadproof witness --all --objective smooth --set base,extA,ext --no-pictures``, one a line.
 """
 
 import json

@@ -101,7 +101,7 @@ def test_a_scenario_s_page_has_its_words_formula_and_definitions(made):
 
 
 def test_small_pictures_are_small_and_stand_still_at_the_danger(made):
-    path = made.folder / "evidence/drives-smooth/scenario-04-base.json"
+    path = made.folder / "evidence/drives-typical/scenario-04-base.json"
     picture = miniature(small_scene(load_drive(path), rp.load().library), "x", "<a drive>")
     assert len(picture) < 30_000
     assert "&lt;a drive&gt;" in picture
@@ -112,7 +112,7 @@ def test_small_pictures_are_small_and_stand_still_at_the_danger(made):
 
 def test_a_drive_that_the_judge_rejects_is_not_drawn(made, tmp_path):
     path = tmp_path / "drive.json"
-    content = json.loads((made.folder / "evidence/drives-smooth/scenario-04-base.json").read_text())
+    content = json.loads((made.folder / "evidence/drives-typical/scenario-04-base.json").read_text())
     path.write_text(json.dumps({**content, "formula": f"not {content['formula']}"}))
     with pytest.raises(RejectedError, match="does not hold on the drive"):
         _draw(rp.load().library, _PictureJob(path, "m0", ""))

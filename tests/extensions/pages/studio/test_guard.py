@@ -297,7 +297,7 @@ def test_a_drive_is_shown_and_samples_are_monitored() -> None:
 
 def test_the_form_of_the_page_follows_the_options_of_questions() -> None:
     assert {(x["job"], x["name"], x["default"]) for x in form()} == {
-        ("find", "objective", "smooth"),
+        ("find", "objective", "typical"),
         ("prove", "declared", False),
     }
     [objective] = [x for x in form() if x["name"] == "objective"]

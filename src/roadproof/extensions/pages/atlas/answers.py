@@ -33,7 +33,7 @@ from roadproof.questions.question import QUESTION
 
 TOPICS: Final = ("proofs", "drives", "overlaps", "implications", "redundancy", "gaps", "classes", "plates")
 """The topics of the atlas, as ``--topics`` names them."""
-OBJECTIVES: Final = ("smooth", "mild", "severe")
+OBJECTIVES: Final = ("typical", "mild", "severe")
 EVIDENCE: Final = "evidence"
 
 

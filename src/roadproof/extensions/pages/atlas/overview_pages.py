@@ -22,9 +22,9 @@ def front_values(answers: Answers, pictures: Mapping[str, AtlasPicture]) -> dict
     every = [answers.home.words(n) for n in answers.numbers]
     sectors = [*dict.fromkeys(x.sector for x in every)]
     rows: dict[str, dict[str, tuple[Words, AtlasPicture | None]]] = {}
-    smooth = answers.drives.get("smooth", {})
+    typical = answers.drives.get("typical", {})
     for x in every:
-        drive = smooth.get(x.number)
+        drive = typical.get(x.number)
         rows.setdefault(x.title, {})[x.sector] = x, None if drive is None else pictures[drive.source.file]
     return {
         "sectors": sectors,
