@@ -1,4 +1,4 @@
-"""Names of vehicles in pictures: on no other name and within the picture, at all times, read from the files."""
+"""Names of vehicles in pictures, read from the files: on no other name, and within the picture."""
 
 import random
 import re
