@@ -13,6 +13,7 @@ const SHARE = 4; // scenarios in one request
 const FIRST = 1;
 
 const cards = signal(new Map()); // of the chosen set, by number
+export const shippedCards = signal({}); // words and pictures by set, there before the server has read it
 const playing = signal(null); // the number of the card that plays
 export const isOpen = signal(isBeside() && recall("gallery", true));
 
@@ -46,11 +47,12 @@ export function followSets(play) {
     if (!numbers.length || !isChosen(set)) return;
     const reply = await ask("gallery", { draft: { base: set }, scenarios: numbers }).catch(() => ({}));
     if (!reply.answer || !isChosen(set)) return;
-    cards.value = new Map([...cards.value, ...reply.answer.cards.map((x) => [x.number, x])]);
+    const asked = reply.answer.cards.map((x) => [x.number, { ...cards.peek().get(x.number), ...x }]);
+    cards.value = new Map([...cards.value, ...asked]);
   };
   effect(() => {
     const set = state.saved.base.value;
-    cards.value = new Map();
+    cards.value = new Map(shippedOf(set).map((x) => [x.number, { number: x.number, picture: x.picture }]));
     const loadAll = async () => {
       await load(set, [FIRST]);
       if (isFirst && isUntouched() && cards.peek().get(FIRST)?.drive) {
@@ -63,6 +65,11 @@ export function followSets(play) {
     };
     loadAll();
   });
+}
+
+/** Return the words and pictures of a set that come with the page. */
+function shippedOf(set) {
+  return shippedCards.peek()[set] ?? [];
 }
 
 function isUntouched() {
@@ -86,7 +93,7 @@ function show(number) {
 
 export function Gallery() {
   if (!isOpen.value) return null;
-  const scenarios = state.names.value?.scenarios ?? [];
+  const scenarios = state.names.value?.scenarios ?? shippedCards.value[state.saved.base.value] ?? [];
   const close = () => !isBeside() && toggleGallery();
   const onKey = (event) => {
     if (event.key === "Escape" && !isBeside()) {
