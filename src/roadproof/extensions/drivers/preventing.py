@@ -20,6 +20,7 @@ from roadproof.extensions.drivers.models import (
 )
 from roadproof.extensions.drivers.preventable import report
 from roadproof.extensions.drivers.preventable.cases import plate_cases
+from roadproof.extensions.drivers.preventable.drawing import draw_sheet
 from roadproof.extensions.drivers.preventable.question import PreventableQuestion
 from roadproof.extensions.drivers.preventable.view import (
     LemmaResult,
@@ -95,7 +96,7 @@ class Plates(QuestionAnswers[PreventableView], BuildResult):
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """The sheet, then the drives."""
-        yield "plates", picture(report.draw_sheet(self.question, self.plates))
+        yield "plates", picture(draw_sheet(self.question, self.plates))
         for plate in self.plates:
             yield from drive_pictures(
                 ((f"{plate.name}-{x.side}", x.drive) for x in plate.shown), self.library
@@ -104,7 +105,7 @@ class Plates(QuestionAnswers[PreventableView], BuildResult):
     def files(self, pictures: bool) -> dict[str, bytes]:
         table = {"plates.csv": as_csv(self._sheet).encode()}
         table |= {f"boundary-{x.model}.v": x.source.encode() for x in self.boundaries if x.source}
-        sheet = {"plates": picture(report.draw_sheet(self.question, self.plates))} if pictures else {}
+        sheet = {"plates": picture(draw_sheet(self.question, self.plates))} if pictures else {}
         return table | drawn(sheet)
 
     def __str__(self) -> str:

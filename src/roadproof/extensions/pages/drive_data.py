@@ -3,7 +3,7 @@
 Distances and danger are the library's own: its definitions are bound and judged, no formula is written here.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import groupby
 from typing import Literal, TypeAlias
@@ -29,7 +29,6 @@ from roadproof.world.road import Road, Zone
 Span: TypeAlias = tuple[float, float]
 Direction: TypeAlias = Literal["along", "across"]
 GRAIN = Fraction(1, 10)
-ZONES: Mapping[Zone, str] = {"main": "main road", "merge": "merge zone", "depart": "departure zone"}
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ from roadproof.extensions.pages.shapes import (
     StrokesShape,
     TextShape,
 )
-from roadproof.frontends.report.colours import SHADES
+from roadproof.frontends.report.colours import SHADES, ZONES
 from roadproof.runtime.records import dataclass
 from roadproof.world.motion import state_at
 
@@ -108,7 +108,7 @@ class Snapshots:
     def block(self, left: float, top: float) -> Block:
         """Return the drawings of all instants right of ``left``, below ``top``, with a legend and an axis."""
         zones = dict.fromkeys(zone for road in self.roads for zone in road.zones)
-        entries = [LegendEntry(data.ZONES[x], SHADES[x], is_line=False) for x in zones]
+        entries = [LegendEntry(ZONES[x], SHADES[x], is_line=False) for x in zones]
         shapes, y = legend("road from above", entries, (EDGE, left + PLOT - 130), top)
         shapes += _direction(left + PLOT, top)
         for k in range(SNAPSHOTS):

@@ -39,24 +39,26 @@ export function toGallery() {
   else toggleGallery();
 }
 
+/** Load some cards of a set, if it is still the chosen one. */
+async function load(set, numbers) {
+  const isChosen = () => set === state.saved.base.peek();
+  if (!numbers.length || !isChosen()) return;
+  const reply = await ask("gallery", { draft: { base: set }, scenarios: numbers }).catch(() => ({}));
+  if (!reply.answer || !isChosen()) return;
+  const loaded = reply.answer.cards.map((x) => [x.number, { ...cards.peek().get(x.number), ...x }]);
+  cards.value = new Map([...cards.value, ...loaded]);
+}
+
 /** Load the cards of the chosen set, now and whenever another is chosen; `play`: start with scenario 1. */
 export function followSets(play) {
   let isFirst = play;
-  const isChosen = (set) => set === state.saved.base.peek();
-  const load = async (set, numbers) => {
-    if (!numbers.length || !isChosen(set)) return;
-    const reply = await ask("gallery", { draft: { base: set }, scenarios: numbers }).catch(() => ({}));
-    if (!reply.answer || !isChosen(set)) return;
-    const asked = reply.answer.cards.map((x) => [x.number, { ...cards.peek().get(x.number), ...x }]);
-    cards.value = new Map([...cards.value, ...asked]);
-  };
   effect(() => {
     const set = state.saved.base.value;
     cards.value = new Map(shippedOf(set).map((x) => [x.number, { number: x.number, picture: x.picture }]));
     const loadAll = async () => {
       await load(set, [FIRST]);
       if (isFirst && isUntouched() && cards.peek().get(FIRST)?.drive) {
-        show(FIRST);
+        await show(FIRST);
         forgetSteps();
       }
       isFirst = false;
@@ -81,7 +83,8 @@ function isUntouched() {
 const numbersOf = (names) => names.scenarios.map((x) => x.number);
 
 /** Make a scenario the question, and show its known drive, or else search for one. */
-function show(number) {
+async function show(number) {
+  if (!cards.peek().get(number)?.formula) await load(state.saved.base.peek(), [number]);
   const card = cards.peek().get(number);
   inOneStep(() => {
     actions.setQuestion(card?.formula ?? String(number));
