@@ -5,13 +5,12 @@ it ends with these lines, and nothing is shaded beyond them.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import TypeAlias
 
 from roadproof.extensions.drivers.lines import PlateLine
 from roadproof.extensions.drivers.manoeuvres import CUT_IN, ManoeuvreName
-from roadproof.library.specification import Specification
 
 Point: TypeAlias = tuple[float, float]
 Outline: TypeAlias = Sequence[Point]
@@ -58,13 +57,13 @@ def _is_inside(place: float, along: Range) -> bool:
     return along[0] + _NEAR < place < along[1] - _NEAR
 
 
-def tells_passed(manoeuvre: ManoeuvreName, is_stepped: bool, specification: Specification) -> bool:
+def tells_passed(manoeuvre: ManoeuvreName, is_stepped: bool, options: Mapping[str, str]) -> bool:
     """Return whether the places of a line before its first span are those where SV has passed.
 
     It is so in a cut-in whose driver does not wait for a time to collision: when it brakes does not depend
     on the gap. A controller that is stepped looks at single places.
     """
-    return manoeuvre == CUT_IN.name and not is_stepped and specification.options.get("cc_gate") == "none"
+    return manoeuvre == CUT_IN.name and not is_stepped and options.get("cc_gate", "none") == "none"
 
 
 def is_empty(lines: Sequence[PlateLine]) -> bool:
@@ -80,6 +79,15 @@ def is_full(lines: Sequence[PlateLine], along: Range) -> bool:
         and x.spans[0][1].near >= along[1] - _NEAR
         for x in lines
     )
+
+
+def side_of_all(lines: Sequence[PlateLine], along: Range) -> str:
+    """Return the side that all places of all lines are on; empty where there are both, or no lines."""
+    if not lines:
+        return ""
+    if is_empty(lines):
+        return "preventable"
+    return "unpreventable" if is_full(lines, along) else ""
 
 
 def _runs(lines: Sequence[PlateLine]) -> Iterator[list[PlateLine]]:

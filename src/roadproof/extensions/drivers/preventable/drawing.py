@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from roadproof.extensions.drivers.models import driver_model
 from roadproof.extensions.drivers.preventable import areas
+from roadproof.extensions.drivers.preventable.own_tests import PlacedTest
 from roadproof.extensions.drivers.preventable.question import PreventableQuestion
 from roadproof.extensions.drivers.preventable.report import measured, shown_symbols
 from roadproof.extensions.drivers.preventable.view import PlateResult
@@ -27,10 +28,11 @@ _GREY, _EDGE = "#555555", 0.2
 
 
 class _Cell(NamedTuple):
-    """The plates of one choice of fixed values."""
+    """The plates of one choice of fixed values, and the tests that are nearest to it."""
 
     name: Sequence[str]
     plates: Sequence[PlateResult]
+    tests: Sequence[PlacedTest]
 
 
 class _Key(NamedTuple):
@@ -60,6 +62,7 @@ def draw_sheet(question: PreventableQuestion, plates: Sequence[PlateResult]) -> 
         box = (_LEFT + _COLUMN * j, height - top - _HIGH, _WIDE, _HIGH)
         axes = figure.add_axes([box[0] / width, box[1] / height, box[2] / width, box[3] / height])
         _draw_plate(axes, question, cell.plates)
+        _draw_tests(axes, question, cell.tests)
         axes.set_title("\n".join(cell.name), fontsize=7, loc="left", pad=3)
         axes.set_ylabel(_label(question, question.manoeuvre.across), fontsize=7)
         axes.set_xlabel(_label(question, question.manoeuvre.line), fontsize=7)
@@ -81,7 +84,9 @@ def _cells(question: PreventableQuestion, plates: Sequence[PlateResult]) -> tupl
     for row, column in product(rows, columns):
         chosen = dict(zip((*beside, *names[1:2]), (*column, *row), strict=True))
         here = [p for p in plates if all(p.fixed.get(name) == value for name, value in chosen.items())]
-        cells.append(_Cell(wrap(_values_text(question, chosen), int(_COLUMN * _NAMED)), here))
+        which = question.choices.index(chosen)
+        tests = [x for x in question.placed_tests if x.plate == which]
+        cells.append(_Cell(wrap(_values_text(question, chosen), int(_COLUMN * _NAMED)), here, tests))
     return cells, len(columns)
 
 
@@ -125,8 +130,14 @@ def _keys(question: PreventableQuestion, plates: Sequence[PlateResult]) -> Itera
         yield _Key("judged drive that collides", mark)
     if "preventable" in sides:
         yield _Key("judged drive that does not", {**mark, "markerfacecolor": "white"})
+    if any(x.has_values for x in question.placed_tests):
+        yield _Key("your test", _TEST)
+    if any(not x.has_values for x in question.placed_tests):
+        yield _Key("your test, other values", _OTHER)
 
 
+_TEST: Mapping[str, Any] = {"marker": "D", "ms": 3, "color": "black", "mew": 0.7, "lw": 0}
+_OTHER: Mapping[str, Any] = {**_TEST, "markerfacecolor": "white"}
 _DOTTED: Mapping[str, Any] = {"fc": "none", "ec": "#999999", "hatch": "...."}
 
 
@@ -162,7 +173,7 @@ def _label(question: PreventableQuestion, name: str) -> str:
 
 def _tells_passed(question: PreventableQuestion, plate: PlateResult) -> bool:
     home = question.basis.specification
-    return areas.tells_passed(question.manoeuvre.name, bool(plate.stepped), home)
+    return areas.tells_passed(question.manoeuvre.name, bool(plate.stepped), home.options)
 
 
 class _Scale(NamedTuple):
@@ -235,17 +246,22 @@ def _draw_areas(axes: Any, plate: PlateResult, colour: str, scale: _Scale) -> No
         axes.plot(*scale.shown(points), color=colour, lw=1.1)
 
 
+def _draw_tests(axes: Any, question: PreventableQuestion, tests: Sequence[PlacedTest]) -> None:
+    """Draw tests of the reader; hollow ones have other fixed values than the plate."""
+    scale, kind = _scale_of(question), question.manoeuvre
+    others, own = ([x for x in tests if x.has_values is there] for there in (False, True))
+    for look, those in ((_OTHER, others), (_TEST, own)):
+        if those:
+            points = [(float(x.test.values[kind.line]), float(x.test.values[kind.across])) for x in those]
+            axes.plot(*scale.shown(points), zorder=5, clip_on=False, **look)
+
+
 def _draw_notes(axes: Any, plates: Sequence[PlateResult], scale: _Scale) -> None:
     """Write on a plate which models have the same answer on all of it: no line is left to show it."""
     notes = []
     for plate in plates:
         where = "at all places looked at" if plate.stepped else "on all lines"
-        side = ""
-        if plate.lines and areas.is_empty(plate.lines):
-            side = "preventable"
-        elif plate.lines and areas.is_full(plate.lines, scale.range):
-            side = "unpreventable"
-        if side:
+        if side := areas.side_of_all(plate.lines, scale.range):
             notes += [driver_model(plate.model).title + ":", f"{side} {where}"]
         elif not plate.lines:
             notes += [driver_model(plate.model).title + ":", "not decided"]

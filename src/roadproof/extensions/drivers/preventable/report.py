@@ -14,12 +14,13 @@ from roadproof.extensions.drivers.words import legend
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.world.units import UNITS
 
+_TESTS = 12  # tests of the reader that the terminal shows
 _TOLD = 5  # lines of a plate, and spans of a line, that the terminal shows
 
 
-def measured(quantity: InitialQuantity, value: Fraction) -> str:
-    """A value in its quantity's unit: ``60 km/h``."""
-    return f"{float(value / UNITS[quantity.unit][0]):g} {quantity.unit}"
+def measured(quantity: InitialQuantity, value: Fraction, digits: int = 6) -> str:
+    """Return a value in its quantity's unit, with so many digits: ``60 km/h``."""
+    return f"{float(value / UNITS[quantity.unit][0]):.{digits}g} {quantity.unit}"
 
 
 def fixed_text(question: PreventableQuestion, plate: PlateResult) -> str:
@@ -77,6 +78,7 @@ def as_text(
                 )
                 result = f"a drive at {values}{_scenario_text(question, x)}"
             lines.append(f"  {x.side}: {result}")
+    lines += _test_lines(question)
     lines += [legend(shown_symbols(question))] if plates else []
     for proved in lemmas:
         lines.append(f"{proved.verdict:<11} {proved.lemma.name}: {proved.lemma.title}")
@@ -86,6 +88,23 @@ def as_text(
         lines.append(f"with {', '.join(question.readings)}")
     lines += [f"{idle}: no boundary that is asked for depends on it" for idle in question.idle]
     return "\n".join(lines)
+
+
+def _test_lines(question: PreventableQuestion) -> list[str]:
+    """Return lines on the tests of the reader: how many are drawn, and the values of some."""
+    if not question.tests:
+        return []
+    placed, known = question.placed_tests, question.manoeuvre.quantities
+    own = sum(x.has_values for x in placed)
+    outside = len(question.tests) - len(placed)
+    lines = [
+        f"tests: {len(placed)} drawn, {own} with the fixed values of their plate, {len(placed) - own} with "
+        f"others, on the nearest plate; {outside} outside the ranges"
+    ]
+    for x in placed[:_TESTS]:
+        values = ", ".join(f"{name} {measured(known[name], v, 4)}" for name, v in x.test.values.items())
+        lines.append(f"  {x.test.name}: {values}")
+    return lines + ([f"  … {len(placed) - _TESTS} more"] if len(placed) > _TESTS else [])
 
 
 def _scenario_text(question: PreventableQuestion, shown: Shown) -> str:
