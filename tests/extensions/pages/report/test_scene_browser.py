@@ -36,8 +36,8 @@ prototype.fillText = function (words, x, y) {
     const wide = this.measureText(words).width;
     const left = at.x / ratio - wide * { left: 0, center: 0.5, right: 1 }[this.textAlign];
     const size = parseFloat(this.font.match(/([\\d.]+)px/)[1]);
-    const y = at.y / ratio;
-    brushes.get(this.canvas).push([words, left, left + wide, y - 0.72 * size, y + 0.05 * size]);
+    const base = at.y / ratio;
+    brushes.get(this.canvas).push([words, left, left + wide, base - 0.72 * size, base + 0.05 * size]);
   }
   return fillText.call(this, words, x, y);
 };
