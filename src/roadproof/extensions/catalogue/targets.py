@@ -58,7 +58,7 @@ class Targets:
 
     @property
     def wrong(self) -> dict[str, str]:
-        """Why tests are not what they claim, by test: the names that pictures have in red."""
+        """The reasons why tests are not what they claim, by test: pictures have these names in red."""
         remarks = (*self.faults, *self.contradictions)
         return {test: x.told for x in reversed(remarks) for test in x.tests}
 

@@ -42,19 +42,18 @@ def _legend(figure: Any, zones: Iterable[Zone], numbered: bool) -> None:
     """Draw the meaning of each colour below the axes, and of the numbers beside roads."""
     x = 0.08
     for zone in zones:
-        figure.add_artist(_sample(figure, x, SHADES[zone]))
+        _sample(figure, x, SHADES[zone])
         figure.text(x + 0.03, 0.03, ZONES[zone], fontsize=8, va="center")
         x += 0.17
     if numbered:
         figure.text(x, 0.03, "numbers beside a road: s in m", fontsize=8, va="center")
 
 
-def _sample(figure: Any, x: float, colour: str) -> Any:
-    """Return a small area of a colour with an edge, in shares of the figure."""
-    from matplotlib.patches import Rectangle  # here: it is loaded where a picture is drawn
-
-    place = figure.transFigure
-    return Rectangle((x, 0.02), 0.025, 0.02, facecolor=colour, edgecolor="#8a8a8a", lw=0.5, transform=place)
+def _sample(figure: Any, x: float, colour: str) -> None:
+    """Draw a small area of a colour with an edge; ``x``: its left in shares of the figure."""
+    axes = figure.add_axes((x, 0.02, 0.025, 0.022))
+    axes.set_axis_off()
+    axes.fill((0, 1, 1, 0), (0, 0, 1, 1), facecolor=colour, edgecolor="#8a8a8a", lw=0.5)
 
 
 def _draw(axes: Any, stretch: MapStretch, numbered: bool) -> None:

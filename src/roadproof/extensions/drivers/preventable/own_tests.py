@@ -60,7 +60,7 @@ def read_tests(path: Path, manoeuvre: Manoeuvre) -> tuple[OwnTest, ...]:
             f"{path}: the table has no column {', '.join(sorted(lacking))}: it needs a column of names "
             f"('{NAME}') and of initial values in SI units, as drivers.csv of catalogue has them"
         )
-    found: list[OwnTest] = []
+    tests: list[OwnTest] = []
     for number, row in enumerate(rows, 2):
         if not _is_of(manoeuvre, row.get("scenario") or ""):
             continue
@@ -68,10 +68,10 @@ def read_tests(path: Path, manoeuvre: Manoeuvre) -> tuple[OwnTest, ...]:
         values = {name: _value(path, number, name, x) for name, x in cells.items() if x}
         if needed - {NAME} <= values.keys():
             own = OwnTest(name=row[NAME] or f"line {number}", values=values)
-            found += [] if own in found[-_ROWS:] else [own]
-        if len(found) > MOST_TESTS:
+            tests += [] if own in tests[-_ROWS:] else [own]
+        if len(tests) > MOST_TESTS:
             raise InputError(f"{path}: more than {MOST_TESTS} tests; write those of interest into a table")
-    return tuple(found)
+    return tuple(tests)
 
 
 def _is_of(manoeuvre: Manoeuvre, scenario: str) -> bool:

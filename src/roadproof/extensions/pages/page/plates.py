@@ -71,7 +71,7 @@ class _Mark(NamedTuple):
     x: float
     y: float
     is_filled: bool
-    told: str
+    text: str
 
 
 class _Area(NamedTuple):
@@ -166,19 +166,19 @@ class _Plane:
             if x.drive is None or not {self.along[0], self.across[0]} <= x.at.keys():
                 continue
             place, row = (float(Fraction(x.at[name])) for name in (self.along[0], self.across[0]))
-            told = ", ".join(f"{name} {self.measured(name, x.at[name])}" for name in self.known(x.at))
-            told = f"{x.side}, {_title(plate.model)}: a judged drive at {told}"
-            marks.append(_Mark(frame.x(place), frame.y(row), x.side == "unpreventable", told))
+            text = ", ".join(f"{name} {self.measured(name, x.at[name])}" for name in self.known(x.at))
+            text = f"{x.side}, {_title(plate.model)}: a judged drive at {text}"
+            marks.append(_Mark(frame.x(place), frame.y(row), x.side == "unpreventable", text))
         return marks
 
     def _test_marks(self, tests: Sequence[PlacedTest], frame: "_Frame") -> Iterator[_Mark]:
         """Yield the tests of the reader; those with the values of the plate are filled."""
         for x in tests:
             values = x.test.values
-            told = ", ".join(f"{name} {self.measured(name, str(v))}" for name, v in values.items())
-            told = f"{x.test.name}: {told}{'' if x.has_values else '; the plate has other values'}"
+            text = ", ".join(f"{name} {self.measured(name, str(v))}" for name, v in values.items())
+            text = f"{x.test.name}: {text}{'' if x.has_values else '; the plate has other values'}"
             place, row = (float(values[name]) for name in (self.along[0], self.across[0]))
-            yield _Mark(frame.x(place), frame.y(row), x.has_values, told)
+            yield _Mark(frame.x(place), frame.y(row), x.has_values, text)
 
     def _tells_passed(self, plate: PlateData) -> bool:
         return areas.tells_passed(self.manoeuvre, bool(plate.stepped), self.options)
