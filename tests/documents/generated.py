@@ -6,6 +6,7 @@ prints the paths. Figures that take long to compute have commands of their own: 
 """
 
 import argparse
+import os
 import runpy
 import shutil
 import sys
@@ -18,6 +19,7 @@ from documents import drawings, keywords_file, reference, rooms, schemas, stub, 
 from extensions.encoding import solver_runs
 from extensions.kernel import extract
 from roadproof.extensions.pages.studio.gallery import SHIPPED, make_shipped_cards
+from roadproof.runtime.archives import SWITCH
 
 ROOT = Path(__file__).parents[2]
 SHIPPED_CARDS = ROOT / "src/roadproof/extensions/pages/studio" / SHIPPED
@@ -85,7 +87,12 @@ def _trusted() -> Contents:
 
 
 def _cards() -> Contents:
-    return {SHIPPED_CARDS: make_shipped_cards().encode()}
+    before = os.environ.pop(SWITCH, None)
+    try:
+        return {SHIPPED_CARDS: make_shipped_cards().encode()}
+    finally:
+        if before is not None:
+            os.environ[SWITCH] = before
 
 
 def _extracted() -> Contents:
