@@ -72,7 +72,7 @@ man: $(READY)
 
 # The studio in a real browser: Debian's Chromium (apt-get install chromium fonts-dejavu-core), or CHROMIUM=/path/to/it.
 browser: $(READY)
-	ROADPROOF_BROWSER=1 $(BIN)/python -m pytest -q -rs tests/extensions/pages/studio/test_browser.py tests/extensions/pages/studio/test_first_impression.py tests/extensions/pages/report tests/extensions/pages/atlas $(ARGS)
+	ROADPROOF_BROWSER=1 $(BIN)/python -m pytest -q -rs tests/extensions/pages/studio/test_browser.py tests/extensions/pages/studio/test_first_impression.py tests/extensions/pages/studio/test_shown.py tests/extensions/pages/report tests/extensions/pages/atlas $(ARGS)
 
 # Every figure of the documents again; ARGS=--update puts the pages right, --only PATTERN asks for less.
 findings: $(READY)

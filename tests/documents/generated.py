@@ -6,6 +6,7 @@ prints the paths. Figures that take long to compute have commands of their own: 
 """
 
 import argparse
+import os
 import runpy
 import shutil
 import sys
@@ -17,8 +18,11 @@ import tally
 from documents import drawings, keywords_file, reference, rooms, schemas, stub, trusted
 from extensions.encoding import solver_runs
 from extensions.kernel import extract
+from roadproof.extensions.pages.studio.gallery import SHIPPED, make_shipped_cards
+from roadproof.runtime.archives import SWITCH
 
 ROOT = Path(__file__).parents[2]
+SHIPPED_CARDS = ROOT / "src/roadproof/extensions/pages/studio" / SHIPPED
 Contents: TypeAlias = Mapping[Path, bytes]
 """The content of each file by its path."""
 
@@ -82,6 +86,15 @@ def _trusted() -> Contents:
     return {trusted.PAGE: trusted.counted(trusted.PAGE.read_text("utf-8")).encode()}
 
 
+def _cards() -> Contents:
+    before = os.environ.pop(SWITCH, None)
+    try:
+        return {SHIPPED_CARDS: make_shipped_cards().encode()}
+    finally:
+        if before is not None:
+            os.environ[SWITCH] = before
+
+
 def _extracted() -> Contents:
     return {extract.CHECKER: extract.extracted()}
 
@@ -95,6 +108,7 @@ GENERATORS = (
     Generator("tables about the tests", _tables_of_tests),
     Generator("the table of solvers", _solvers),
     Generator("requirements of an example", _requirements),
+    Generator("cards of the studio's gallery", _cards),
     Generator("the table of folders", _rooms),
     Generator("the tables of the code to trust", _trusted),
     Generator("the program that Coq extracts", _extracted, program="coqc"),

@@ -27,7 +27,7 @@ from roadproof.extensions.drivers.manoeuvres import (
     line,
 )
 from roadproof.extensions.drivers.models import MODELS, lemmas_for, manoeuvre_of, models_for
-from roadproof.extensions.drivers.preventable import report
+from roadproof.extensions.drivers.preventable import drawing
 from roadproof.extensions.drivers.preventable.beside import beside_boundary, first_drive, judged_drive
 from roadproof.extensions.drivers.preventable.question import PreventableQuestion
 from roadproof.frontends.cli.main import main
@@ -426,10 +426,12 @@ def test_a_side_that_has_no_place_with_few_digits_is_shown_all_the_same():
 
 def test_no_two_plates_of_a_model_are_drawn_over_each_other(monkeypatch):
     drawn: list[list[str]] = []
-    monkeypatch.setattr(report, "_draw_plate", lambda axes, study, here: drawn.append([x.name for x in here]))
+    monkeypatch.setattr(
+        drawing, "_draw_plate", lambda axes, study, here: drawn.append([x.name for x in here])
+    )
     at = {"Ve0": ["60 km/h", "90 km/h"], "Vy": [1, 2], "dy0": [1, 2]}
     found = rp.preventable("cut-in", ["r157", "eu1426"], at=at, lines=2, lemmas=False, jobs=1)
-    report.draw_sheet(found.question, found.plates)
+    drawing.draw_sheet(found.question, found.plates)
     assert sorted(name for names in drawn for name in names) == sorted(found.question.plates)
     assert [len(names) for names in drawn] == [2] * 8
 

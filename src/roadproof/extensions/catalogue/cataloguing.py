@@ -172,8 +172,10 @@ class CatalogueAnswer(QuestionAnswers[CatalogueView], BuildResult):
                 curves[entry.id] = curves_of(entry)
             elif (drive := runs.get(entry.id)) is not None:
                 curves[entry.id] = curves_of_drive(drive.file)
+        wrong = self.tested.wrong
+        fails = {x.entry.id: x.why.at for x in self.concrete if x.why is not None}
         pictures = [
-            DrivePicture(test, groups.get(test, "no scenario"), x)
+            DrivePicture(test, groups.get(test, "no scenario"), x, wrong.get(test, ""), fails.get(test))
             for test, x in curves.items()
             if x is not None
         ]

@@ -19,7 +19,7 @@ from roadproof.extensions.traffic.evaluate.decisions import Decision, decision_t
 from roadproof.frontends.api.build_result import formats, written
 from roadproof.frontends.report.csv_table import csv_text
 from roadproof.frontends.report.figures import count_axis, make_figure
-from roadproof.frontends.report.sheet import ColouredText, Column, Sheet
+from roadproof.frontends.report.sheet import ColouredText, Column, Sheet, excerpt
 from roadproof.frontends.report.sheet import as_csv as csv_of
 from roadproof.library.scenarios import number_in
 from roadproof.runtime.files import utf8
@@ -82,6 +82,8 @@ def _start(name: str, entry: tuple[str, Decision]) -> float | None:
     return entry[1].start.get(name)
 
 
+MOST_WHY = 90
+"""The most letters of the reason beside the name of a test that is not what it claims."""
 _SURE, _POSSIBLE, _NONE = "#1f5fbf", "#9dbbe3", "#b5473c"
 _INCH_A_LETTER = 0.06  # of labels at 7 points
 
@@ -276,7 +278,8 @@ def draw_matrix(tests: Sequence[str], targets: Targets, in_force: Sequence[str] 
     labels = _INCH_A_LETTER * max(map(len, names), default=0)
     heights = [0.16 * len(tests) + labels + 1.2, *(2.2 + 0.6 * ("gaps" in title) for title in bars)]
     longest = max(map(len, bars.values()), default=0)
-    width = max(7.0, 1.5 + 0.26 * len(columns), 1.0 + 0.15 * longest)
+    beside = 0.055 * min(MOST_WHY, max(map(len, targets.wrong.values()), default=0))
+    width = max(7.0, 1.5 + 0.26 * len(columns) + beside, 1.0 + 0.15 * longest)
     figure, axes = make_figure(heights, width=width)
     above = axes[0]
     for x, target in enumerate(columns):
@@ -291,9 +294,12 @@ def draw_matrix(tests: Sequence[str], targets: Targets, in_force: Sequence[str] 
     for label, target in zip(above.get_xticklabels(), columns, strict=True):
         label.set_color("black" if target.tested else _NONE)
     above.set_yticks(range(len(tests)), tests, fontsize=6)
-    wrong = {test for x in (*targets.faults, *targets.contradictions) for test in x.tests}
-    for label, test in zip(above.get_yticklabels(), tests, strict=True):
-        label.set_color(_NONE if test in wrong else "black")
+    wrong = targets.wrong
+    for y, (label, test) in enumerate(zip(above.get_yticklabels(), tests, strict=True)):
+        if test in wrong:
+            label.set_color(_NONE)
+            place = (len(columns) - 0.2, y)
+            above.text(*place, excerpt(wrong[test], MOST_WHY), fontsize=5.5, color=_NONE, va="center")
     above.grid(color="#eeeeee", lw=0.6)
     above.set_axisbelow(True)
     above.set_ylim(len(tests) - 0.5, -0.5)

@@ -57,6 +57,12 @@ class Targets:
         return (*(x for x in self.targets if not x.tested), *self.gaps.missing)
 
     @property
+    def wrong(self) -> dict[str, str]:
+        """The reasons why tests are not what they claim, by test: pictures have these names in red."""
+        remarks = (*self.faults, *self.contradictions)
+        return {test: x.told for x in reversed(remarks) for test in x.tests}
+
+    @property
     def all_targets(self) -> tuple[TargetData, ...]:
         """The scenarios, classes, and classes of gaps."""
         return (*self.targets, *self.gaps.targets)

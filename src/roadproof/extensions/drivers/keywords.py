@@ -8,6 +8,7 @@ from roadproof.frontends.settings.keywords import BudgetKeywords, RunKeywords, S
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
     from roadproof.frontends.api.checking import Kernel
     from roadproof.library.bind import Number
@@ -18,5 +19,6 @@ class PreventableKeywords(BudgetKeywords, SharingKeywords, RunKeywords, total=Fa
     along: tuple[Number, Number] | None
     across: tuple[Number, Number] | None
     lines: int
+    tests: str | Path | None
     lemmas: bool
     kernel: Kernel | None

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 from typing import ClassVar, Unpack
 
 from roadproof.errors import UsageError
@@ -20,6 +21,8 @@ from roadproof.extensions.drivers.models import (
 )
 from roadproof.extensions.drivers.preventable import report
 from roadproof.extensions.drivers.preventable.cases import plate_cases
+from roadproof.extensions.drivers.preventable.drawing import draw_sheet
+from roadproof.extensions.drivers.preventable.own_tests import read_tests
 from roadproof.extensions.drivers.preventable.question import PreventableQuestion
 from roadproof.extensions.drivers.preventable.view import (
     LemmaResult,
@@ -95,7 +98,7 @@ class Plates(QuestionAnswers[PreventableView], BuildResult):
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """The sheet, then the drives."""
-        yield "plates", picture(report.draw_sheet(self.question, self.plates))
+        yield "plates", picture(draw_sheet(self.question, self.plates))
         for plate in self.plates:
             yield from drive_pictures(
                 ((f"{plate.name}-{x.side}", x.drive) for x in plate.shown), self.library
@@ -104,7 +107,7 @@ class Plates(QuestionAnswers[PreventableView], BuildResult):
     def files(self, pictures: bool) -> dict[str, bytes]:
         table = {"plates.csv": as_csv(self._sheet).encode()}
         table |= {f"boundary-{x.model}.v": x.source.encode() for x in self.boundaries if x.source}
-        sheet = {"plates": picture(report.draw_sheet(self.question, self.plates))} if pictures else {}
+        sheet = {"plates": picture(draw_sheet(self.question, self.plates))} if pictures else {}
         return table | drawn(sheet)
 
     def __str__(self) -> str:
@@ -127,6 +130,7 @@ def preventable(
     or 8, where SV changes lanes), of which drives are then shown where there are such. ``models``: names,
     all that say something of it where there are none. ``at``: initial values by name, several for several
     plates (SI units or with a unit); ``along``, ``across``: ranges of the two that vary; ``lines`` of each.
+    ``tests``: a table of tests (CSV) to draw as points, such as drivers.csv of ``catalogue``.
     ``using``: definitions with those of ``driver.spec`` (``load(specs=["driver"])``). Raises ``InputError``,
     ``UsageError``.
     """
@@ -151,6 +155,7 @@ def preventable(
         given.lines,
         given.lemmas,
         scenario,
+        () if given.tests is None else read_tests(Path(given.tests), kind),
     )
     question.check()
     boundaries = () if given.kernel is None else _boundaries(question)

@@ -10,18 +10,17 @@ from functools import cached_property
 
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.extensions.pages import drive_data as data
-from roadproof.extensions.pages.plane import Point, Points, RoadView, extent_of, views_along
+from roadproof.extensions.pages.plane import Point, Points, RoadView, extent, extent_of, views_along
 from roadproof.extensions.pages.scene import (
     DASH,
     EDGE,
     LANE_PIXELS,
-    TITLE,
     WIDTH,
     AnimationScene,
     Pavement,
     PavementShift,
 )
-from roadproof.extensions.pages.shapes import PolygonShape, Shape, StrokesShape, TextShape
+from roadproof.extensions.pages.shapes import PolygonShape, Shape, StrokesShape
 from roadproof.frontends.report.colours import SHADES
 from roadproof.library.specification import Library
 from roadproof.runtime.records import dataclass
@@ -32,8 +31,6 @@ EVERY, PARTS = 5, 16
 """The step between views from which the scale is chosen, in instants; the number of parts of a
 moving edge.
 """
-LETTERS = (9, 11)
-"""The width and height of a letter of a name in px."""
 
 
 def scene_of(
@@ -41,13 +38,13 @@ def scene_of(
     library: Library,
     width: float = WIDTH,
     edge: float = EDGE,
-    top: float = TITLE,
+    above: float | None = None,
     lane_pixels: float = LANE_PIXELS,
     grain: Fraction = data.GRAIN,
 ) -> AnimationScene:
     """Return the scene of a drive, on a straight road or on one with bends."""
     kind = AnimationScene if file.road.line is None else BentScene
-    return kind(file, library, width, edge, top, lane_pixels, grain)
+    return kind(file, library, width, edge, above, lane_pixels, grain)
 
 
 @dataclass(frozen=True)
@@ -124,16 +121,21 @@ class BentScene(AnimationScene):
             yield PolygonShape(outlines, self.colours[x.other], 0.2, x.near)
 
     def vehicles(self) -> Iterator[Shape]:
-        """Yield the vehicles in the direction of the road, each with its name inside, or above where it does
-        not fit.
-        """
+        """Yield the vehicles in the direction of the road, then their names inside or beside them."""
         for name, colour in self.colours.items():
-            seen = [(view, self.box(name, k)) for k, view in enumerate(self.views)]
-            yield PolygonShape([self.places(view.vehicle(box)) for view, box in seen], colour)
-            centres = [self.place(view.at((a + b) / 2, (c + d) / 2)) for view, (a, b, c, d) in seen]
-            motion = self.file.drive.vehicles[name]
-            long, wide = (float(x) * self.scale[0] for x in (motion.length, motion.width))
-            fits = long >= LETTERS[0] * len(name) and wide >= LETTERS[1]
-            down = 4 if fits else -4 - wide / 2
-            places = [(x, y + down) for x, y in centres]
-            yield TextShape(name, places, "white" if fits else colour, size=11, anchor="middle")
+            yield PolygonShape([*self.outlines(name)], colour)
+        yield from self.names()
+
+    def outlines(self, name: str) -> Iterator[Points]:
+        """Yield the corners of a vehicle at each instant in px."""
+        for k, view in enumerate(self.views):
+            yield self.places(view.vehicle(self.box(name, k)))
+
+    def tracks(self, least: float = 0.0) -> dict[str, list[data.Box]]:
+        return {name: [_at_least(extent(x), least) for x in self.outlines(name)] for name in self.states}
+
+
+def _at_least(box: data.Box, least: float) -> data.Box:
+    """Return a box that is longer at both ends, if it is shorter than ``least`` px."""
+    more = max(0.0, least - (box[1] - box[0])) / 2
+    return box[0] - more, box[1] + more, box[2], box[3]

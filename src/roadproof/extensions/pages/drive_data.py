@@ -3,7 +3,7 @@
 Distances and danger are the library's own: its definitions are bound and judged, no formula is written here.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import groupby
 from typing import Literal, TypeAlias
@@ -29,7 +29,6 @@ from roadproof.world.road import Road, Zone
 Span: TypeAlias = tuple[float, float]
 Direction: TypeAlias = Literal["along", "across"]
 GRAIN = Fraction(1, 10)
-ZONES: Mapping[Zone, str] = {"main": "main road", "merge": "merge zone", "depart": "departure zone"}
 
 
 @dataclass(frozen=True)
@@ -264,51 +263,3 @@ def road_in(road: Road, origin: Fraction, window: Span) -> ShownRoad:
 
 Box: TypeAlias = tuple[float, float, float, float]
 """Left, right, bottom, top."""
-
-
-def place_names(
-    boxes: Mapping[str, Box], sizes: Mapping[str, tuple[float, float]], within: Box | None = None
-) -> dict[str, Box]:
-    """Return a place of its size for each vehicle's name, beside its box: in no box, on no other name.
-
-    Ahead of the box is tried first, then behind it, above and below, then ahead of and behind the other boxes
-    and names. Places ``within`` a box are preferred.
-    """
-    placed: dict[str, Box] = {}
-    for name in sorted(boxes, key=lambda x: -boxes[x][1]):
-        taken = [*boxes.values(), *placed.values()]
-        every = [*_places(boxes[name], sizes[name]), *_places_beside(boxes[name], sizes[name], taken)]
-        free = [x for x in every if not any(_meet(x, y) for y in taken)]
-        inside = (x for x in free if within is None or _is_within(x, within))
-        placed[name] = next(inside, free[0])  # ahead of all others is free
-    return placed
-
-
-def _is_within(one: Box, other: Box) -> bool:
-    return other[0] <= one[0] and one[1] <= other[1] and other[2] <= one[2] and one[3] <= other[3]
-
-
-def _places_beside(box: Box, size: tuple[float, float], taken: Sequence[Box]) -> Iterator[Box]:
-    """Yield the places of a name that is level with its box, ahead of and behind each of the others."""
-    low = (box[2] + box[3] - size[1]) / 2
-    room = 0.15 * size[0]
-    for begin in (*(x[1] + room for x in taken), *(x[0] - room - size[0] for x in taken)):
-        yield begin, begin + size[0], low, low + size[1]
-
-
-def _places(box: Box, size: tuple[float, float]) -> Iterator[Box]:
-    left, right, bottom, top = box
-    width, height = size
-    middle, centre = (bottom + top) / 2, (left + right) / 2
-    room = 0.15 * width
-    for begin, low in (
-        (right + room, middle - height / 2),
-        (left - room - width, middle - height / 2),
-        (centre - width / 2, top),
-        (centre - width / 2, bottom - height),
-    ):
-        yield begin, begin + width, low, low + height
-
-
-def _meet(one: Box, other: Box) -> bool:
-    return one[0] < other[1] and other[0] < one[1] and one[2] < other[3] and other[2] < one[3]

@@ -19,6 +19,7 @@ from roadproof.extensions.pages.drive_axes import (
     legend,
     ticks_in,
 )
+from roadproof.extensions.pages.labels import place_labels
 from roadproof.extensions.pages.letters import width_of
 from roadproof.extensions.pages.plane import Point, Points, RoadView, extent, extent_of, views_along
 from roadproof.extensions.pages.shapes import (
@@ -29,7 +30,7 @@ from roadproof.extensions.pages.shapes import (
     StrokesShape,
     TextShape,
 )
-from roadproof.frontends.report.colours import SHADES
+from roadproof.frontends.report.colours import SHADES, ZONES
 from roadproof.runtime.records import dataclass
 from roadproof.world.motion import state_at
 
@@ -107,7 +108,7 @@ class Snapshots:
     def block(self, left: float, top: float) -> Block:
         """Return the drawings of all instants right of ``left``, below ``top``, with a legend and an axis."""
         zones = dict.fromkeys(zone for road in self.roads for zone in road.zones)
-        entries = [LegendEntry(data.ZONES[x], SHADES[x], is_line=False) for x in zones]
+        entries = [LegendEntry(ZONES[x], SHADES[x], is_line=False) for x in zones]
         shapes, y = legend("road from above", entries, (EDGE, left + PLOT - 130), top)
         shapes += _direction(left + PLOT, top)
         for k in range(SNAPSHOTS):
@@ -213,12 +214,13 @@ class _Snapshot:
         boxes = {name: x for name, x in boxes.items() if x[2] < high and x[3] > low}  # others are beside
         sizes = {name: (width_of(name, SMALL) + 4, float(_NAMES)) for name in boxes}
         within = self.left, self.left + PLOT, low - _BETWEEN / 2, high + _BETWEEN / 2
-        names = data.place_names(boxes, sizes, within)
+        names = place_labels({name: [x] for name, x in boxes.items()}, sizes, within)
         for name in boxes:
             yield PolygonShape([_clipped(outlines[name], low - 2, high + 2)], self.whole.colours[name])
-        for name, (left, right, bottom, _) in names.items():
-            place = ((left + right) / 2, bottom + _NAMES - 2.5)
-            yield RectangleShape([(left, bottom, right - left, _NAMES)], "#ffffff", 0.7)
+        for name, placed in names.items():
+            [(left, right, top, _)] = placed.boxes
+            place = ((left + right) / 2, top + _NAMES - 2.5)
+            yield RectangleShape([(left, top, right - left, _NAMES)], "#ffffff", 0.7)
             yield TextShape(name, [place], self.whole.colours[name], SMALL, "middle")
 
 

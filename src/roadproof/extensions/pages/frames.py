@@ -11,7 +11,8 @@ from roadproof.extensions.pages.artists import artist_of, canvas, corners_of, li
 from roadproof.extensions.pages.bent_scene import scene_of
 from roadproof.extensions.pages.film import Film
 from roadproof.extensions.pages.plane import Point, Points
-from roadproof.extensions.pages.scene import PAUSE, WIDTH, PavementShift, headings, timeline_rows
+from roadproof.extensions.pages.scene import PAUSE, WIDTH, PavementShift
+from roadproof.extensions.pages.scene_rows import headings, timeline_rows
 from roadproof.extensions.pages.shapes import (
     LineShape,
     PolygonShape,

@@ -41,3 +41,11 @@ def lines_of(text: str, width: float, size: float = LETTER) -> list[str]:
             word = word[count:]
         line = word
     return [*lines, line] if line else lines
+
+
+def fitted(text: str, width: float, size: float = LETTER) -> str:
+    """Return a text that is at most so wide (px): of a wider one the beginning, and an ellipsis."""
+    if width_of(text, size) <= width:
+        return text
+    count = next((k for k in range(len(text), 0, -1) if width_of(f"{text[:k]}…", size) <= width), 0)
+    return f"{text[:count]}…"

@@ -11,13 +11,17 @@ from xml.etree.ElementTree import Element, tostring
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.extensions.maps.xml_writer import element
 from roadproof.extensions.pages.bent_scene import BentScene, scene_of
+from roadproof.extensions.pages.drive_data import Box
+from roadproof.extensions.pages.labels import PlacedLabel
 from roadproof.extensions.pages.plane import Points
 from roadproof.extensions.pages.scene import DASH, AnimationScene
 from roadproof.extensions.pages.shapes import PolygonShape, StrokesShape
 from roadproof.library.specification import Library
 
-WIDTH, MARGIN, LANE_PIXELS, LEAST = 320.0, 12.0, 5.0, 8.0  # pixels; of a vehicle along, at least ``LEAST``
+WIDTH, MARGIN, LANE_PIXELS, LEAST = 320.0, 16.0, 5.0, 8.0  # pixels; of a vehicle along, at least ``LEAST``
+NAME = 12  # pixels of the letters of names, as in the style sheet
 NEAR_ENOUGH = 0.4  # pixels between a picture and the motion that it shows
+JUST = 0.001  # per cent of a round: between two places of a jump
 _CLASSES = ("sv", "pov", "pov2", "pov3")
 
 
@@ -33,7 +37,7 @@ def miniature(scene: AnimationScene, name: str, title: str) -> str:
     """
     drawn = _BentDrawing(scene, name) if isinstance(scene, BentScene) else _SceneDrawing(scene, name)
     height = 2 * MARGIN + scene.road_height
-    shapes = [drawn.road(), *drawn.envelopes(), *drawn.vehicles()]
+    shapes = [drawn.road(), *drawn.envelopes(), *drawn.vehicles(), *drawn.names()]
     style = element("style", text="".join(drawn.keyframes))
     root = element(
         "svg", element("title", text=title), style, *shapes, viewBox=f"0 0 {WIDTH:g} {_px(height)}"
@@ -82,16 +86,36 @@ class _SceneDrawing:
             yield self._moving([self._switched(area, x.near, f"e{k}")], moved, boxes, f"a{k}")
 
     def vehicles(self) -> Iterator[Element]:
-        """Yield the vehicles, each with its name above."""
+        """Yield the vehicles."""
         for k, name in enumerate(self.scene.states):
             boxes = [self.scene.pixels(self.scene.box(name, i)) for i in range(len(self.scene.times))]
             _, _, width, height = boxes[0]
             wide = max(LEAST, width)
             box = _shape("rect", "car", x=width - wide, width=wide, height=height, rx=2.0)
-            label = _shape("text", "label", x=width - wide / 2, y=-2.0)
+            moved = [_translate(x, y) for x, y, _, _ in boxes]
+            yield self._named(self._moving([box], moved, [x[:2] for x in boxes], f"v{k}"), k)
+
+    def names(self) -> Iterator[Element]:
+        """Yield the names of the vehicles: on no other name, and within the picture at all times."""
+        labels = self.scene.labels(NAME, LEAST, inside=False)
+        for k, name in enumerate(self.scene.states):
+            label = _shape("text", "label", x=0.0, y=0.0)
             label.text = name
-            moved = [f"translate({_px(x)}px,{_px(y)}px)" for x, y, _, _ in boxes]
-            yield self._named(self._moving([box, label], moved, [x[:2] for x in boxes], f"v{k}"), k)
+            yield self._named(self._jumping(label, labels[name], f"n{k}"), k)
+
+    def _jumping(self, shape: Element, label: PlacedLabel, part: str) -> Element:
+        """Return a shape in a group that follows a label and jumps where that jumps."""
+        places, frames, last = [_written(x) for x in label.boxes], list[str](), len(label.boxes) - 1
+        begins = sorted({0, *label.before})
+        for begin, end in zip(begins, [*begins[1:], last], strict=True):
+            way = [*places[begin:end], _written(label.before[end]) if end in label.before else places[end]]
+            for k in sorted(_douglas_peucker(way, 0, len(way) - 1)):
+                time = 100 * float(self.scene.times[begin + k] / self.scene.duration)
+                if begin and not k:
+                    time += JUST  # after the place up to the jump
+                frames.append(f"{time:.6g}%{{transform:{_translate(*way[k])}}}")
+        frames.append(f"to{{transform:{_translate(*places[-1])}}}")
+        return self._played(element("g", shape), frames, part)
 
     def _named(self, vehicle: Element, k: int) -> Element:
         """Set the colour of a vehicle's group by its index; return the group."""
@@ -177,12 +201,19 @@ class _BentDrawing(_SceneDrawing):
             box = self._changing(
                 box, "transform", turns, [(math.radians(x) * wide,) for x in turned], f"t{k}"
             )
-            label = _shape("text", "label", x=0.0, y=-high / 2 - 2.0)
-            label.text = name
             centres = [view.at((a + b) / 2, (c + d) / 2) for view, (a, b, c, d) in seen]
             places = self.scene.places(centres)
-            moved = [f"translate({_px(x)}px,{_px(y)}px)" for x, y in places]
-            yield self._named(self._moving([box, label], moved, places, f"v{k}"), k)
+            moved = [_translate(x, y) for x, y in places]
+            yield self._named(self._moving([box], moved, places, f"v{k}"), k)
+
+
+def _translate(x: float, y: float) -> str:
+    return f"translate({_px(x)}px,{_px(y)}px)"
+
+
+def _written(box: Box) -> tuple[float, float]:
+    """Return where a name is written whose box is given: its middle, and the line of its letters."""
+    return (box[0] + box[1]) / 2, box[3] - 3.0
 
 
 def _path(kind: str, lines: Sequence[Points], end: str) -> Element:

@@ -1,6 +1,7 @@
 """Draws a drive as one animated SVG file, which a browser plays without scripts."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import assert_never
 
 from roadproof.evidence.drive_file import DriveFile
@@ -8,7 +9,8 @@ from roadproof.extensions.maps.xml_writer import Element, element
 from roadproof.extensions.pages.bent_scene import scene_of
 from roadproof.extensions.pages.drive_data import GRAIN
 from roadproof.extensions.pages.plane import Points
-from roadproof.extensions.pages.scene import PAUSE, WIDTH, AnimationScene, Pavement, headings, timeline_rows
+from roadproof.extensions.pages.scene import PAUSE, WIDTH, AnimationScene, Pavement
+from roadproof.extensions.pages.scene_rows import headings, timeline_rows
 from roadproof.extensions.pages.shapes import (
     BOX,
     ENDS,
@@ -26,6 +28,8 @@ from roadproof.extensions.pages.shapes import (
 )
 from roadproof.frontends.report.colours import DANGER
 from roadproof.library.specification import Library
+
+NO_JUMPS: Mapping[int, Sequence[float]] = MappingProxyType({})
 
 
 def draw_moving(file: DriveFile, library: Library) -> bytes:
@@ -83,7 +87,7 @@ def _animations(scene: AnimationScene, shape: Shape) -> Iterator[Element]:
         case LineShape():
             yield from _attribute_animations(scene, ENDS, shape.ends)
         case TextShape():
-            yield from _attribute_animations(scene, ("x", "y"), shape.places)
+            yield from _attribute_animations(scene, ("x", "y"), shape.places, shape.before)
         case StrokesShape():
             pass
         case _:
@@ -93,12 +97,21 @@ def _animations(scene: AnimationScene, shape: Shape) -> Iterator[Element]:
 
 
 def _attribute_animations(
-    scene: AnimationScene, names: Sequence[str], values: Sequence[Sequence[float]]
+    scene: AnimationScene,
+    names: Sequence[str],
+    values: Sequence[Sequence[float]],
+    before: Mapping[int, Sequence[float]] = NO_JUMPS,
 ) -> Iterator[Element]:
-    """Yield an animation for each attribute that changes; ``values``: of all attributes at each instant."""
-    for name, numbers in zip(names, zip(*values, strict=True), strict=True):
-        if len({px(x) for x in numbers}) > 1:
-            yield element("animate", attributeName=name, values=_loop_values(numbers), **_loop_timing(scene))
+    """Yield an animation for each attribute that changes.
+
+    ``values``: of all attributes at each instant; ``before``: their values up to an instant of a jump.
+    """
+    for which, name in enumerate(names):
+        numbers = [x[which] for x in values]
+        jumps = {k: px(x[which]) for k, x in before.items()}
+        if len({*map(px, numbers), *jumps.values()}) > 1:
+            loop, timing = _loop([*map(px, numbers)], jumps), _loop_timing(scene)
+            yield element("animate", attributeName=name, **loop, **timing)
 
 
 def _transform_animation(scene: AnimationScene, kind: str, values: str) -> Element:
@@ -109,6 +122,17 @@ def _transform_animation(scene: AnimationScene, kind: str, values: str) -> Eleme
 def _outline_animation(scene: AnimationScene, outlines: Sequence[Points]) -> Element:
     values = _joined([points_text(x) for x in outlines])
     return element("animate", attributeName="points", values=values, **_loop_timing(scene))
+
+
+def _loop(values: Sequence[str], before: Mapping[int, str]) -> dict[str, str]:
+    """Return the values of one loop; those up to a jump, and those from it, have the same time."""
+    if not before:
+        return {"values": _joined(values)}
+    paused = [*enumerate(values), *((len(values) + k, values[-1]) for k in range(int(PAUSE / GRAIN)))]
+    timed = [y for k, x in paused for y in ([(k, before[k])] if k in before else []) + [(k, x)]]
+    last = paused[-1][0]
+    times = ";".join(f"{k / last:.5f}".rstrip("0").rstrip(".") for k, _ in timed)
+    return {"values": ";".join(x for _, x in timed), "keyTimes": times}
 
 
 def _loop_values(numbers: Sequence[float]) -> str:

@@ -13,23 +13,22 @@ from typing import NamedTuple
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
 from roadproof.extensions.pages import drive_data as data
+from roadproof.extensions.pages.labels import PlacedLabel, place_labels
+from roadproof.extensions.pages.letters import lines_of, width_of
 from roadproof.extensions.pages.plane import Point
-from roadproof.extensions.pages.shapes import LineShape, RectangleShape, Shape, TextShape
-from roadproof.frontends.report.colours import COLOURS, DANGER, SHADES, TRUE
-from roadproof.frontends.report.sheet import excerpt
+from roadproof.extensions.pages.shapes import LETTER, LineShape, RectangleShape, Shape, TextShape
+from roadproof.frontends.report.colours import COLOURS, SHADES
 from roadproof.library.specification import Library
 from roadproof.runtime.records import dataclass
-from roadproof.world.length_error import length_error_of
 from roadproof.world.motion import State, states_at
 
 WIDTH, EDGE, NAMES = 860.0, 14.0, 230.0  # pixels: the picture, its margin, the column of names
-ROW, TITLE = 17.0, 44.0
+ROW, LINE, ARROW = 17.0, 17.0, 150.0  # pixels: of a part, of a line of the heading, of the driving direction
+HEADING, NAME, ABOVE = 14, 11, 16.0  # letters of the title and of names; the room for names beside the road
 LANE_PIXELS = 7.0  # a metre across has at least that many
 DASH = (3, 9)  # metres of paint and of a gap between lanes
 PAUSE = Fraction(1)  # how long the last state stands, in s
 MOST_STRIPS, DEEPEST = 9, 2
-LONGEST = int(NAMES / 6.2)  # letters of a name
-STEPS, MOST_TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000), 12  # whole seconds between ticks
 
 
 class PavementShift(NamedTuple):
@@ -56,7 +55,8 @@ class Pavement:
 class AnimationScene:
     """A drive to be animated, with everything that is computed from it once.
 
-    ``width``, ``edge``, ``top``: px of the picture, its margin, and the space above the road;
+    ``width``, ``edge``: px of the picture and its margin; ``above``: of the space above the road, if it has
+    no title;
     ``lane_pixels``: the least px of a metre across; ``grain``: seconds between instants.
     """
 
@@ -64,9 +64,32 @@ class AnimationScene:
     library: Library
     width: float = WIDTH
     edge: float = EDGE
-    top: float = TITLE
+    above: float | None = None
     lane_pixels: float = LANE_PIXELS
     grain: Fraction = data.GRAIN
+
+    @cached_property
+    def title(self) -> list[str]:
+        """The lines of the title: the scenario in words, or the formula."""
+        whole = data.heading_of(self.file, self.library)[0]
+        return lines_of(whole, self.width - 2 * self.edge, HEADING)
+
+    @cached_property
+    def notes(self) -> list[str]:
+        """The lines below the title: what is seen, and when danger begins."""
+        notes = [f"the view follows {self.subject}"]
+        if len(self.states) > 1:
+            notes.append("shaded: within RSS distances, red if violated")
+        if self.begins is not None:
+            notes.append(f"danger begins at {self.begins:.1f} s")
+        return lines_of("; ".join(notes), self.width - 2 * self.edge - ARROW, LETTER)
+
+    @cached_property
+    def top(self) -> float:
+        """The y at which the road begins, in px."""
+        if self.above is not None:
+            return self.above
+        return EDGE + LINE * (len(self.title) + len(self.notes)) + ABOVE
 
     @cached_property
     def times(self) -> list[Fraction]:
@@ -207,13 +230,38 @@ class AnimationScene:
             yield RectangleShape([*map(self.pixels, x.boxes)], self.colours[x.other], 0.2, x.near)
 
     def vehicles(self) -> Iterator[Shape]:
-        """Yield the vehicles, each with its name inside, or above where it does not fit."""
+        """Yield the vehicles, then their names inside or beside them."""
         for name, colour in self.colours.items():
+            yield RectangleShape([self.pixels(self.box(name, k)) for k in self.instants], colour)
+        yield from self.names()
+
+    def names(self) -> Iterator[TextShape]:
+        """Yield the names of the vehicles: on no other name, and within the picture at all times."""
+        for name, placed in self.labels(NAME).items():
+            colour = "white" if placed.is_inside else self.colours[name]
+            places = [_baseline(x) for x in placed.boxes]
+            before = {k: _baseline(x) for k, x in placed.before.items()}
+            yield TextShape(name, places, colour, NAME, "middle", before)
+
+    def labels(self, letter: float, least: float = 0.0, inside: bool = True) -> dict[str, PlacedLabel]:
+        """Return the places of the names of vehicles in letters of a size (px).
+
+        ``least``: the least length of a vehicle that is drawn (px); ``inside``: whether names may be inside.
+        """
+        sizes = {name: (width_of(name, letter) + letter / 2, letter + 1.0) for name in self.states}
+        room = min(ABOVE, self.top)
+        within = self.edge, self.width - self.edge, self.top - room, self.top + self.road_height + room
+        return place_labels(self.tracks(least), sizes, within, inside)
+
+    def tracks(self, least: float = 0.0) -> dict[str, list[data.Box]]:
+        """Return the boxes (left, right, top, bottom; px) of each vehicle at all instants, as drawn."""
+        tracks = dict[str, list[data.Box]]()
+        for name in self.states:
             boxes = [self.pixels(self.box(name, k)) for k in self.instants]
-            yield RectangleShape(boxes, colour)
-            fits = boxes[0][2] >= 9 * len(name)
-            places = [(x + w / 2, y + h / 2 + (4 if fits else -8)) for x, y, w, h in boxes]
-            yield TextShape(name, places, "white" if fits else colour, size=11, anchor="middle")
+            tracks[name] = [
+                (x + wide - max(wide, least), x + wide, y, y + high) for x, y, wide, high in boxes
+            ]
+        return tracks
 
     @cached_property
     def strips(self) -> list[data.Strip]:
@@ -250,19 +298,10 @@ class Envelope:
     near: Sequence[bool]
 
 
-def headings(scene: AnimationScene) -> Iterator[TextShape]:
-    """Yield the title, which is the scenario in words or the formula, and a legend."""
-    yield TextShape(data.heading_of(scene.file, scene.library)[0], [(EDGE, 20)], size=14)
-    notes = [f"the view follows {scene.subject}"]
-    if len(scene.states) > 1:
-        notes.append("shaded: within RSS distances, red if violated")
-    if scene.begins is not None:
-        notes.append(f"danger begins at {scene.begins:.1f} s")
-    yield TextShape("; ".join(notes), [(EDGE, 37)], "#555555")
-    error = length_error_of(scene.file.road)
-    if error is not None:
-        length_note = f"lengths differ by up to {float(100 * error.share):.2g} %, {float(error.metres):.2g} m"
-        yield TextShape(length_note, [(EDGE, scene.rows_begin - 11)], "#555555", size=10)
+def _baseline(box: data.Box) -> data.Span:
+    """Return where the middle of a name is written whose box is given."""
+    left, right, _, bottom = box
+    return (left + right) / 2, bottom - 2.5
 
 
 def _envelope_box(box: data.Box, along: data.Distance, across: data.Distance, k: int) -> data.Box:
@@ -280,31 +319,3 @@ def _envelope_box(box: data.Box, along: data.Distance, across: data.Distance, k:
     else:
         bottom -= across.needed[k]
     return left, max(left, right), bottom, max(bottom, top)
-
-
-def timeline_rows(scene: AnimationScene) -> Iterator[Shape]:
-    """Yield a row for each part and for danger, an axis of time, and a line at the present instant."""
-    entries = [(x.depth, x.name, x.spans, TRUE) for x in scene.strips]
-    for other, spans in scene.dangers.items():
-        entries.append((0, f"danger between {scene.subject} and {other}", spans, DANGER))
-    top = scene.rows_begin
-    bottom = top + ROW * len(entries)
-    begin, end = EDGE + NAMES, WIDTH - EDGE
-    pixels = (end - begin) / float(scene.file.horizon)
-    for row, (depth, name, spans, colour) in enumerate(entries):
-        y = top + ROW * row
-        yield TextShape(excerpt("\u2002" * depth + name, LONGEST), [(EDGE, y + 12)], "#333333", size=11)
-        yield LineShape([(begin, end, y + 8, y + 8)], "#dddddd")
-        for since, until in spans:
-            x, width = begin + since * pixels, max(1.5, (until - since) * pixels)
-            yield RectangleShape([(x, y + 3, width, 10)], colour)
-    step = next((x for x in STEPS if scene.file.horizon <= MOST_TICKS * x), STEPS[-1])
-    for second in range(0, int(scene.file.horizon) + 1, step):
-        place = (begin + second * pixels, bottom + 14)
-        yield TextShape(f"{second} s", [place], "#555555", size=10, anchor="middle")
-    if scene.begins is not None:
-        x = begin + scene.begins * pixels
-        yield LineShape([(x, x, top - 8, bottom)], DANGER, (4, 2))
-        yield TextShape("danger begins", [(x, top - 11)], DANGER, size=11, anchor="middle")
-    places = [begin + float(time) * pixels for time in scene.times]
-    yield LineShape([(x, x, top - 4, bottom) for x in places], "#222222")

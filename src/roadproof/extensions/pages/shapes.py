@@ -1,6 +1,7 @@
 """The shapes of drawings of drives, in px, and their SVG elements at one instant."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import field
 from typing import Literal, TypeAlias, TypeVar, assert_never
 
 from roadproof.extensions.maps.xml_writer import Element, document, element
@@ -40,13 +41,17 @@ class LineShape:
 
 @dataclass(frozen=True)
 class TextShape:
-    """A text; ``places``: the point at each instant, or once, at which it begins, is centred or ends."""
+    """A text; ``places``: the point at each instant, or once, at which it begins, is centred or ends.
+
+    ``before``: the place up to an instant at which the text jumps, by the number of the instant.
+    """
 
     text: str
     places: Sequence[Span]
     fill: str = "#111111"
     size: int = LETTER
     anchor: Anchor = "start"
+    before: Mapping[int, Span] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ def viewer_data(
     home = library.select(file.set_name, file.options)
     every = shown_formulas or (ShownFormula("question", file.formula),)
     formulas = [formula_view(x, file, x.specification or home) for x in every]
-    title = file.formula if file.scenario is None else str(words_of(home, file.scenario))
+    title = _title_of(shown_formulas[0], home) if shown_formulas else _scenario_title(file, home)
     return document.ViewerDocument(title, drive_view(file, library), drive_data(file, {}), formulas)
 
 
@@ -140,6 +140,22 @@ def _vehicle_view(file: DriveFile, name: str) -> document.VehicleView:
     motion = file.drive.vehicles[name]
     knots = [[float(x) for x in vars(state).values()] for state in piece_starts(motion)]
     return document.VehicleView(float(motion.length), float(motion.width), knots)
+
+
+def _scenario_title(file: DriveFile, home: Specification) -> str:
+    """Return the scenario of a drive in words, or its formula."""
+    return file.formula if file.scenario is None else str(words_of(home, file.scenario))
+
+
+def _title_of(shown: ShownFormula, home: Specification) -> str:
+    """Return the scenario that a shown formula is in words, or the formula."""
+    where = shown.specification or home
+    try:
+        query = read_query(where, shown.formula, "formula")[1]
+    except RoadproofError:
+        return shown.formula
+    number = scenario_number(query)
+    return query.text if number is None else str(words_of(where, number))
 
 
 # --- formulas -----------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
 
-_OWN = ("palette", "terms", "drive", "plane", "scene", "strips", "curves", "verdict", "viewer")
+_OWN = ("palette", "terms", "drive", "plane", "labels", "scene", "strips", "curves", "verdict", "viewer")
 _MODULES = ("vendor/view", *(f"viewer/{name}" for name in _OWN))
 
 

@@ -20,7 +20,6 @@ from roadproof.extensions.pages.drive_data import (
     danger_spans,
     dangers_of,
     distances_of,
-    place_names,
     road_in,
     strips_of,
     times_of,
@@ -169,16 +168,6 @@ def test_lanes_and_zones_that_are_seen() -> None:
 
 def meet(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
     return one[0] < other[1] and other[0] < one[1] and one[2] < other[3] and other[2] < one[3]
-
-
-def test_names_of_vehicles_are_on_nothing() -> None:
-    boxes = {"SV": (0.0, 5.0, 1.0, 3.0), "POV1": (6.0, 11.0, 1.0, 3.0), "POV2": (12.0, 17.0, 1.0, 3.0)}
-    names = place_names(boxes, dict.fromkeys(boxes, (4.0, 1.5)))
-    placed = [*names.values()]
-    for k, name in enumerate(placed):
-        assert not any(meet(name, box) for box in boxes.values())
-        assert not any(meet(name, other) for other in placed[:k])
-    assert names["POV2"][0] > 17.0
 
 
 def test_strips_of_one_trace_are_all_there() -> None:

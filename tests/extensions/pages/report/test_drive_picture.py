@@ -23,9 +23,10 @@ from extensions.pages.report.test_drive import LIBRARY, driving, file_of, meet, 
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.extensions.pages.artists import SHARP
 from roadproof.extensions.pages.drive_axes import EDGE, PLOT, ticks_in
-from roadproof.extensions.pages.drive_data import Box, dangers_of, distances_of, place_names
+from roadproof.extensions.pages.drive_data import Box, dangers_of, distances_of
 from roadproof.extensions.pages.drive_picture import Drawing, drawing_of
 from roadproof.extensions.pages.drive_road import SNAPSHOTS, Snapshots
+from roadproof.extensions.pages.labels import place_labels
 from roadproof.extensions.pages.letters import lines_of, width_of
 from roadproof.extensions.pages.shapes import LineShape, PolygonShape, RectangleShape, StrokesShape, TextShape
 from roadproof.frontends.api.drives import DriveFolder
@@ -142,8 +143,12 @@ def test_names_of_vehicles_are_on_nothing_however_they_stand() -> None:
         for name in names:
             x, y = rng.uniform(0, 60), rng.uniform(0, 30)
             boxes[name], sizes[name] = (x, x + 20, y, y + 8), (8.0 * len(name), 11.0)
-        placed = place_names(boxes, sizes, (0, 300, -5, 45))
+        labels = place_labels({name: [x] for name, x in boxes.items()}, sizes, (0, 300, -5, 45))
+        placed = {name: label.boxes[0] for name, label in labels.items()}
         for name, place in placed.items():
+            assert place[0] >= 0
+            assert place[2] >= -5
+            assert place[3] <= 45
             assert not any(meet(place, x) for x in boxes.values())
             assert not any(meet(place, x) for other, x in placed.items() if other != name)
 

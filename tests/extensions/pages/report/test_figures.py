@@ -2,6 +2,7 @@
 
 import csv
 import io
+import random
 import re
 from collections import Counter
 from dataclasses import replace
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from matplotlib.text import Text
 
 from extensions.pages.report.edges import cut_off
 from roadproof.engines.setting import Search
@@ -253,6 +255,50 @@ def test_pictures_of_strips_with_and_without_measures() -> None:
         made = as_bytes(draw_exploration(ASKED, explored))
         assert made["png"].startswith(b"\x89PNG")
         assert b"<svg" in made["svg"]
+
+
+def drawn_words(figure: Any) -> list[str]:
+    """The words of a figure; none is cut off."""
+    figure.draw_without_rendering()
+    shown = [x for x in figure.findobj(Text) if x.get_visible() and x.get_text().strip()]
+    for x in shown:
+        box = x.get_window_extent()
+        if x.axes is None or x.axes.axison or "legend" in type(x.axes).__name__.lower():
+            assert box.x0 >= -1, x
+            assert box.x1 <= figure.bbox.width + 1, x
+    for axes in figure.axes:
+        if (legend := axes.get_legend()) is not None:
+            assert legend.get_window_extent().x1 <= figure.bbox.width
+            assert legend.get_window_extent().y0 >= 0
+    return [x.get_text() for x in shown]
+
+
+def test_nothing_is_shaded_between_values_with_different_verdicts() -> None:
+    rng = random.Random(4)
+    verdicts = (Verdict.WITNESSED, Verdict.UNKNOWN, Verdict.NONE_WITHIN)
+    for _ in range(20):
+        values = tuple(finding(str(k), rng.choice(verdicts), "r") for k in range(6))
+        explored = exploration(findings=values, boundaries=())
+        figure = draw_exploration(ASKED, explored)
+        strip = next(x for x in figure.axes if x.get_xlabel())
+        spans = [(min(x.get_xy()[:, 0]), max(x.get_xy()[:, 0])) for x in strip.patches if x.get_alpha()]
+        same = [k for k in range(5) if values[k].verdict is values[k + 1].verdict]
+        assert sorted(spans) == [(k, k + 1) for k in same]
+        words = drawn_words(figure)
+        assert "pale: between decided values with the same verdict" in words
+        for verdict in {x.verdict for x in values}:
+            assert any(x.startswith(f"{verdict}: ") for x in words)
+
+
+def test_titles_and_legends_of_maps_are_whole_and_axes_have_units() -> None:
+    variables = tuple(SweepVariable(name, unit, F(0), F(1)) for name, unit in (("a", "s"), ("b", "unitless")))
+    for verdict in (Verdict.WITNESSED, Verdict.IMPOSSIBLE):
+        values = tuple(finding(f"{x} {y}", verdict, "r") for x in range(2) for y in range(2))
+        asked = replace(ASKED, variables=variables, steps=2)
+        words = drawn_words(draw_exploration(asked, exploration(findings=values, boundaries=())))
+        assert "b [no unit]" in words
+        assert any(x.startswith("a [s]") for x in words)
+        assert any(x.startswith(f"{verdict}: ") for x in words)
 
 
 def test_values_are_shown_in_decimals() -> None:

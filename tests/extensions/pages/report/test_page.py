@@ -97,7 +97,7 @@ def test_plates_are_drawn_with_all_their_models_and_drives(tmp_path):
     rp.preventable("cut-in", ["r157"], at=at, lines=5, lemmas=False, jobs=1, out=tmp_path / "p")
     found, text = made(tmp_path / "p", out=tmp_path / "page.html")
     seen = body_of(text)
-    assert seen.count('<svg viewBox="0 0 300 190" class="plate"') == 2
+    assert seen.count('<svg viewBox="0 0 300 204" class="plate"') == 2
     assert seen.count("<polyline") == 4
     assert "Ve0 = 60 km/h, Vy = 2 m/s" in seen
     assert "dV0: how much faster SV is than POV, Ve0-Vo0 (km/h); Vy: the lateral speed of POV (m/s)" in seen

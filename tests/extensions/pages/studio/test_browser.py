@@ -72,7 +72,7 @@ def test_no_label_of_the_scene_covers_another(browser: Any, tmp_path: Path) -> N
         tab.page.reload()
         tab.until("() => (window.heard ?? []).filter((x) => x.words.includes('km/h')).length >= 4")
         last = tab.page.evaluate(
-            "() => window.heard.slice(window.heard.findLastIndex((x) => x.words === 'main-1'))"
+            "window.heard.slice(window.heard.findLastIndex((x) => x.words.includes('driving')))"
         )
         names = [x for x in last if "km/h" in x["words"]]
         assert {x["words"].split()[0] for x in names} == {*starts}

@@ -32,6 +32,19 @@ def test_shipped_drives_are_shown_without_a_search(base: str, monkeypatch: pytes
         assert {*card["picture"]["vehicles"]} == {*card["drive"]["vehicles"]}
 
 
+def test_cards_that_come_with_the_page_have_words_and_pictures_of_all_scenarios() -> None:
+    shipped = read_start_files([]).as_data()["cards"]
+    assert isinstance(shipped, dict)
+    assert [*shipped] == ["base", "extA", "ext"]
+    for named in shipped.values():
+        assert [x["number"] for x in named] == [*range(1, 25)]
+        for x in named:
+            assert x["title"]
+            assert x["sentence"]
+            assert {*x["picture"]["vehicles"]} >= {"SV"}
+            assert x["picture"]["road"]["lanelets"]
+
+
 def test_scenarios_without_a_known_drive_have_none_and_nothing_is_searched() -> None:
     found = cards([1, 2])
     assert [*found] == [1, 2]

@@ -15,6 +15,7 @@ examples:
   roadproof preventable 1 --at dy0=2.2 --at Vy=0.5        drives of the scenario: they begin safe
   roadproof preventable cut-in --model careful,r157 --at 'Ve0=60km/h' --at Vy=1 --out cut-in
   roadproof preventable deceleration --at Ve0=60km/h,130km/h --along dx0=0:120
+  roadproof preventable cut-in --tests report/drivers.csv --out plates       your tests as points
   roadproof preventable deceleration --at dGdt=5    POV's braking grows by 5 m/s^3, and is not there at once
   roadproof preventable cut-out --option cc_gate=none --param cc_delay=0.5
   roadproof preventable cut-in --option cc_perception=overlap     another reading of the regulation
@@ -24,6 +25,8 @@ A plate varies two initial values and fixes the others. On each of its lines, th
 range are exact. A judged drive on each side follows the model: one ends in a collision, the other never does.
 The lemmas say why the formula (--spec driver) is the boundary. The fuzzy safety model (fsm) is a controller
 that looks ten times a second: its points are decided one by one, and nothing is claimed between them.
+Each row of --tests has a name (column test) and initial values in SI units. It is drawn on the plate with the
+nearest fixed values; a hollow point has others than its plate.
 With --out: evidence, plates.csv, plates.png.
 """
 OPTIONS = Preventable

@@ -8,6 +8,7 @@ from roadproof.evidence.answers import headings, shared
 from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 from roadproof.extensions.drivers.lines import Side
 from roadproof.extensions.drivers.manoeuvres import ManoeuvreName
+from roadproof.extensions.drivers.preventable.own_tests import OwnTest
 from roadproof.extensions.drivers.preventable.plate import PlateLineData, Range
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict
@@ -44,6 +45,7 @@ class PlateRequest:
     across: Annotated[Range, Doc("The range of the initial value that differs from line to line.")]
     lines: Annotated[int, Rule(minimum=2), Doc("How many lines a plate has.")]
     lemmas: Annotated[bool, Doc("Whether lemmas are proved that the formulas are the boundary.")]
+    tests: Annotated[tuple[OwnTest, ...], LEFT_OUT, Doc("Tests of the reader, to be drawn as points.")] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,3 +156,4 @@ class PreventableData(headings.AnswerHeading):
     ] = ()
     plates: tuple[PlateData, ...]
     lemmas: Annotated[tuple[LemmaData, ...], Doc("That the formulas are the boundary.")]
+    tests: Annotated[tuple[OwnTest, ...], LEFT_OUT, Doc("Tests of the reader, to be drawn as points.")] = ()

@@ -32,6 +32,7 @@ from roadproof.extensions.drivers.models import (
 )
 from roadproof.extensions.drivers.preventable import data
 from roadproof.extensions.drivers.preventable.claims import Beside, Lines
+from roadproof.extensions.drivers.preventable.own_tests import OwnTest, PlacedTest, placed_tests
 from roadproof.extensions.drivers.preventable.plate import Plate
 from roadproof.extensions.drivers.preventable.view import (
     LemmaResult,
@@ -75,6 +76,7 @@ class PreventableQuestion:
     rows: int = 100
     with_lemmas: bool = True
     scenario: int | None = None
+    tests: tuple[OwnTest, ...] = ()
 
     @property
     def work(self) -> Work:
@@ -94,6 +96,7 @@ class PreventableQuestion:
             across=self.across,
             lines=self.rows,
             lemmas=self.with_lemmas,
+            tests=self.tests,
         )
 
     @classmethod
@@ -115,6 +118,7 @@ class PreventableQuestion:
                 request.lines,
                 request.lemmas,
                 request.scenario,
+                request.tests,
             )
             question.check()
         except UsageError as error:
@@ -155,8 +159,8 @@ class PreventableQuestion:
     def plates(self) -> dict[str, Plate]:
         """The plates by name: for each choice of the sheet's values, each model."""
         plates: dict[str, Plate] = {}
-        for values in product(*self.sheet.values()):
-            fixed = {**self.fixed, **dict(zip(self.sheet, values, strict=True))}
+        for choice in self.choices:
+            fixed = {**self.fixed, **choice}
             text = "-".join(f"{name}-{value}".replace("/", "_") for name, value in fixed.items())
             for model in self.models:
                 name = f"{model.name}-{text}" if text else model.name
@@ -169,6 +173,18 @@ class PreventableQuestion:
                     lines=self.rows,
                 )
         return plates
+
+    @cached_property
+    def choices(self) -> list[dict[str, Fraction]]:
+        """The fixed values of the plates, without those that all share: each choice of the sheet's values."""
+        return [dict(zip(self.sheet, values, strict=True)) for values in product(*self.sheet.values())]
+
+    @cached_property
+    def placed_tests(self) -> tuple[PlacedTest, ...]:
+        """The tests that are within the ranges, each on the nearest of ``choices``."""
+        ranges = {self.manoeuvre.line: self.along, self.manoeuvre.across: self.across}
+        choices = [{**self.fixed, **x} for x in self.choices]
+        return tuple(placed_tests(self.tests, self.manoeuvre, choices, ranges))
 
     @property
     def is_gradual(self) -> bool:
@@ -298,6 +314,7 @@ class PreventableQuestion:
             idle=self.idle,
             plates=tuple(plate_data(x, kind, place) for x in view.plates),
             lemmas=tuple(lemma_data(name, x, place) for name, x in lemmas),
+            tests=self.tests,
         )
 
 

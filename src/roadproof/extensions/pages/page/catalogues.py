@@ -1,6 +1,6 @@
 """The template values of a test catalogue: tested situations, and what each test shows."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
@@ -37,15 +37,17 @@ MOST_FORMULAS = 6
 
 @dataclass(frozen=True)
 class _Test:
-    """A test with the facts about it; ``link``: its id on the page, ``row``: that of its row in the table.
+    """A test with the facts about it.
 
-    The row of a concrete test is called as the file of its judgement.
+    ``link``: its id on the page; ``row``: that of its row in the table, which is called as the file of its
+    judgement. ``wrong``: why it is not what it claims.
     """
 
     data: ConcreteTestData | AbstractTestData
     facts: Sequence[FactData]
     link: str
     row: str
+    wrong: Sequence[str] = ()
 
     @property
     def id(self) -> str:
@@ -83,12 +85,18 @@ def catalogue(result: PageResult, context: PageContext, words: Words) -> dict[st
     """Return situations and tests, decisions of driver models, and how the answer was made."""
     data = read(CatalogueData, result.data, result.name)
     targets = (*data.targets, *data.gaps.targets)
+    wrong: dict[str, list[str]] = {}
+    for remark in (*data.faults, *data.contradictions):
+        for name in remark.tests:
+            wrong.setdefault(name, []).append(remark.told)
+    set_name = data.set.partition(",")[0]
     tests = [
         _Test(
             x,
             [y for y in data.facts if y.test == x.id],
             f"test-{result.id}-{k}",
-            judged_name(x.id, data.set.partition(",")[0]),
+            judged_name(x.id, set_name),
+            wrong.get(x.id, ()),
         )
         for k, x in enumerate(data.tests)
     ]
@@ -119,7 +127,37 @@ def _decisions(decisions: Sequence[DecisionData]) -> dict[str, object]:
         "decisions": rows,
         "models": {name: x for name, x in MODELS.items() if any(y.driver == name for y in decisions)},
         "symbols": {name: x for name, x in quantities.items() if name in names},
+        "worst_of": _worst_of,
+        "least_left": _least_left,
+        "reasons_of": _reasons_of,
+        "own_drives": sum(_worst_of([*x.values()]) is not None for x in rows.values()),
     }
+
+
+def _worst_of(decisions: Sequence[DecisionData]) -> DecisionData | None:
+    """Return the decision with a drive that is worst: the hardest collision, else the least gap."""
+    driven = [x for x in decisions if x.drive is not None]
+    hits = [x for x in driven if x.speed is not None]
+    return max(hits, key=lambda x: x.speed or 0.0, default=None) or min(
+        (x for x in driven if x.gap is not None), key=lambda x: x.gap or 0.0, default=None
+    )
+
+
+def _least_left(decisions: Sequence[DecisionData]) -> str:
+    """Return the least gap (m) that a driver leaves, 0 where one collides; empty where none is decided."""
+    if any(x.instant is not None for x in decisions):
+        return "0"
+    gaps = [x.gap for x in decisions if x.gap is not None]
+    return f"{min(gaps):.4g}" if gaps else ""
+
+
+def _reasons_of(decisions: Mapping[str, DecisionData]) -> list[tuple[list[str], str]]:
+    """Return each reason with the models that it is of."""
+    reasons: dict[str, list[str]] = {}
+    for name, x in decisions.items():
+        if x.reason:
+            reasons.setdefault(x.reason, []).append(name)
+    return [(names, reason) for reason, names in reasons.items()]
 
 
 def _provenance(data: CatalogueData, context: PageContext) -> dict[str, object]:
@@ -178,26 +216,46 @@ def _drives(data: CatalogueData, context: PageContext) -> Callable[[ConcreteTest
     def drive_of(test: ConcreteTestData) -> PageDrive:
         scenarios = [y for y in test.shown if number_in(y.what) is not None][:MOST_FORMULAS]
         lanes = {y.lane: f"L{k}" for k, y in enumerate(scenarios)}
+        failing = [*_failing(test, {y.what for y in scenarios}, lanes)]
 
         def as_tested(file: DriveFile) -> DriveFile:
             """The drive in the definitions and at the values of the catalogue."""
             named = {**file.lanes, **{v: k for k, v in lanes.items()}}
             return replace(file, set_name=set_name, options=data.options, values=values, lanes=named)
 
-        formulas = []
-        for k, y in enumerate(scenarios):
-            first, *others = y.vehicles
-            group = others[0] if len(others) == 1 else f"{{{', '.join(others)}}}"
-            formulas.append(
-                ShownFormula("watch" if k else "question", f"{y.what}({first}, {group}, {lanes[y.lane]})")
-            )
+        texts = [_applied(y.what, y.vehicles, lanes[y.lane]) for y in scenarios]
+        formulas = [ShownFormula("question", x, explain=(0, Fraction(0))) for x in failing]
+        formulas += [ShownFormula("watch" if k or failing else "question", x) for k, x in enumerate(texts)]
         if not formulas:
             danger = danger_comes(context.library.select(set_name), *roles(2)).text
             return context.drive(
                 Path(test.file), adapt=as_tested, formulas=[ShownFormula("question", danger)], hold_at=[]
             )
         return context.drive(
-            Path(test.file), adapt=as_tested, formulas=formulas, hold_at=[float(y.at) for y in scenarios]
+            Path(test.file),
+            adapt=as_tested,
+            formulas=formulas,
+            hold_at=[*(None for _ in failing), *(float(y.at) for y in scenarios)],
         )
 
     return drive_of
+
+
+def _applied(name: str, vehicles: Sequence[str], lane: str) -> str:
+    """Return a scenario of vehicles in a lane, as text."""
+    first, *others = vehicles
+    group = others[0] if len(others) == 1 else f"{{{', '.join(others)}}}"
+    return f"{name}({first}, {group}, {lane})"
+
+
+def _failing(test: ConcreteTestData, shown: Collection[str], lanes: dict[str, str]) -> Iterator[str]:
+    """Yield the scenario that a picture of the test shows to fail: the first that it claims, or the nearest.
+
+    ``lanes``: the name of each lane in formulas; that of the nearest scenario is added.
+    """
+    claimed = [x for x in test.claims if number_in(x) is not None and x not in shown]
+    if claimed:
+        yield str(number_in(claimed[0]))
+    elif test.why is not None:
+        name = lanes.setdefault(test.why.lane, f"L{len(lanes)}")
+        yield _applied(test.why.nearest, test.why.vehicles, name)

@@ -85,7 +85,7 @@ class PageContext:
         self,
         file: Path | Mapping[str, object],
         formulas: Sequence[ShownFormula] = (),
-        hold_at: Sequence[float] = (0.0,),
+        hold_at: Sequence[float | None] = (0.0,),
         adapt: Callable[[DriveFile], DriveFile] = lambda file: file,
     ) -> PageDrive:
         """Add a drive to the page, or return why it cannot be shown.
@@ -93,7 +93,7 @@ class PageContext:
         Args:
           file: a drive file or its plain data.
           formulas: formulas to show instead of its own.
-          hold_at: the instant (s) at which each formula has to hold.
+          hold_at: the instant (s) at which each formula has to hold; None where it need not.
           adapt: a function that changes the drive file before it is judged.
         """
         try:
@@ -147,10 +147,10 @@ class PageContext:
         return self.findings.get((folder / name).resolve())
 
 
-def _failure(view: FormulaView, at: float) -> str:
+def _failure(view: FormulaView, at: float | None) -> str:
     """Return why a formula cannot be read, or that it is false at an instant; empty where it is true."""
-    if view.error:
-        return view.error
+    if view.error or at is None:
+        return view.error or ""
     if at == 0 and view.holds:
         return ""
     spans = view.parts[0].true if at and view.parts else ()

@@ -13,6 +13,7 @@ from roadproof.core_record import DRIVES
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.strict import read_json
 from roadproof.extensions.pages.studio.examples import EXAMPLES
+from roadproof.extensions.pages.studio.gallery import shipped_cards
 from roadproof.extensions.pages.studio.requests import form
 from roadproof.extensions.pages.viewer_page import viewer_modules, viewer_style
 from roadproof.library.specification import read_specification
@@ -20,7 +21,7 @@ from roadproof.runtime.files import read_text
 
 _SCRIPT, _STYLE = "text/javascript; charset=utf-8", "text/css; charset=utf-8"
 _OWN = (
-    *("store", "server", "address", "state", "history", "recent", "editor", "actions", "live"),
+    *("store", "server", "address", "state", "answers", "history", "recent", "editor", "actions", "live"),
     *("picture", "gallery", "tour", "bar", "side", "app"),
 )
 MOST_FILES, LARGEST_FILE = 200, 1_000_000  # of a folder that is looked through; bytes
@@ -99,6 +100,7 @@ class StartContent:
             "shows": self.shows and bool(self.drives),
             "form": form(),
             "examples": [asdict(x) for x in EXAMPLES],
+            "cards": shipped_cards(),
         }
 
 

@@ -3,12 +3,14 @@
 import { html, useEffect, useRef } from "vendor/view";
 import { colour, coloursOf, font } from "viewer/palette";
 import { acrossOf, formatNumber, requiredAt, stateAt, windowOf } from "viewer/drive";
+import { placesBeside, placeWords } from "viewer/labels";
 import { extentOf, viewOf } from "viewer/plane";
 
 const ZONES = { main: "main road", merge: "merge zone", depart: "departure zone" };
 const HEIGHT = 216;
 const MARGIN = { top: 20, bottom: 26 };
 const MOST_STRETCH = 6;
+const STEPS = [5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000]; // metres between ticks
 const LETTERS = 13; // pixels for a line of words
 const HIGHEST = 420; // pixels of a road with bends, which is to scale
 
@@ -56,10 +58,12 @@ function paint(canvas, drive, time, toScale) {
   paintRoad(brush, drive, place);
   if (place.bends) paintBar(brush, drive, place);
   else paintScale(brush, place);
+  paintDirection(brush, place);
   const colours = coloursOf(Object.keys(drive.vehicles));
   const needs = drive.distances.map((distance) => paintRequired(brush, drive, distance, time, place, colours));
   const boxes = Object.keys(drive.vehicles).map((name) => paintVehicle(brush, drive, name, time, place, colours));
-  boxes.forEach((box, k) => labelVehicle(brush, box, boxes.filter((_, other) => other !== k), place));
+  for (const box of boxes) labelVehicle(brush, box, boxes, place);
+  labelLanes(brush, drive, boxes, place);
   for (const need of needs) if (need) labelDistance(brush, need, boxes, place);
   const description = `${describe(drive, time)}`;
   canvas.setAttribute("aria-label", `The road from above at ${time.toFixed(2)} s: ${description}`);
@@ -70,9 +74,13 @@ function projection(drive, time, width, toScale) {
   const [low, high] = windowOf(drive);
   const [right, left] = acrossOf(drive.road);
   const origin = stateAt(Object.values(drive.vehicles)[0], time).s;
-  const common = { low, high, right, left, origin, width, letters: 0, labels: [] };
+  const within = { x: 2, y: MARGIN.top - 4, wide: width - 4, tall: HEIGHT - MARGIN.top - MARGIN.bottom + 8 };
+  const common = { low, high, right, left, origin, width, within, letters: 0, labels: [] };
   const view = viewOf(drive, time);
-  if (view) return { ...common, ...bentProjection(drive, view, width) };
+  if (view) {
+    const bent = bentProjection(drive, view, width);
+    return { ...common, ...bent, within: { ...within, tall: bent.height - MARGIN.top - MARGIN.bottom + 8 } };
+  }
   const along = width / (high - low);
   const room = HEIGHT - MARGIN.top - MARGIN.bottom;
   const fitting = Math.max(1, Math.min(MOST_STRETCH, room / (left - right) / along));
@@ -129,18 +137,29 @@ function paintRoad(brush, drive, place) {
     }
     brush.setLineDash([]);
     if (s[0] !== null && s[0] > seen[0]) stroke(brush, [place.point(begin, d[1]), place.point(begin, d[0])]);
+  }
+}
+
+/** Write the name of each lane on it, at the first place from its beginning where it covers nothing. */
+function labelLanes(brush, drive, boxes, place) {
+  const seen = [place.origin + place.low, place.origin + place.high];
+  for (const { lane, zone, s, d } of drive.road.lanelets) {
+    const [begin, end] = [Math.max(seen[0], s[0] ?? -Infinity), Math.min(seen[1], s[1] ?? Infinity)];
+    if (begin >= end || (d[1] - d[0]) * place.across < place.letters) continue;
     brush.fillStyle = colour("--faint");
     brush.font = font(11);
-    brush.textAlign = "left";
-    if ((d[1] - d[0]) * place.across < place.letters) continue;
     const words = zone === "main" ? lane : `${lane} · ${ZONES[zone]}`;
-    write(brush, place, [Math.max(seen[0], begin), d[1]], words, [4, 12]);
+    const size = { wide: brush.measureText(words).width, tall: LETTERS };
+    const down = place.bends ? (d[0] + d[1]) / 2 : d[1];
+    const steps = Array.from({ length: 40 }, (_, k) => place.point(begin + ((end - begin) * k) / 40, down));
+    const places = steps.map(([x, y]) => [x + 4, place.bends ? y - LETTERS / 2 : y + 2]);
+    writeFree(brush, place, places, size, words, boxes, false);
   }
 }
 
 /** Draw a scale bar on a road with bends, where distances along the picture are not distances along the road. */
 function paintBar(brush, drive, place) {
-  const step = [5, 10, 20, 50, 100].find((x) => x * place.along > 56) ?? 200;
+  const step = STEPS.find((x) => x * place.along > 56) ?? STEPS.at(-1);
   const y = place.height - 8;
   brush.fillStyle = colour("--faint");
   brush.strokeStyle = colour("--faint");
@@ -149,14 +168,34 @@ function paintBar(brush, drive, place) {
   brush.font = font(11);
   brush.textAlign = "left";
   const { error } = drive.road;
-  const bends = error ? ` · lengths differ by up to ${formatNumber(error[0], 2)} %, ${formatNumber(error[1], 2)} m` : "";
-  brush.fillText(`${step} m${bends}`, 14 + step * place.along, y);
+  const [bar, left] = [`${step} m`, 14 + step * place.along];
+  const length = error ? `lengths differ by up to ${formatNumber(error[0], 2)} %, ${formatNumber(error[1], 2)} m` : "";
+  brush.fillText(fitting(brush, [bar, length], place.width - left - 6).join(" · "), left, y);
+}
+
+/** Return as many words as there is room for when they are joined by dots. */
+function fitting(brush, words, room) {
+  const some = words.filter(Boolean);
+  while (some.length > 1 && brush.measureText(some.join(" · ")).width > room) some.pop();
+  return some;
+}
+
+/** Draw the driving direction at the right, with as much of the legend before it as there is room for. */
+function paintDirection(brush, place) {
+  brush.fillStyle = brush.strokeStyle = colour("--faint");
+  brush.font = font(11);
   brush.textAlign = "right";
-  brush.fillText("to scale · driving direction →", place.width - 6, 13);
+  brush.lineWidth = 1.2;
+  const [tip, y] = [place.width - 6, 9];
+  stroke(brush, [[tip - 18, y], [tip, y]]);
+  stroke(brush, [[tip - 5, y - 3.5], [tip, y], [tip - 5, y + 3.5]]);
+  const stretched = place.stretch > 1 ? `across stretched ×${place.stretch.toFixed(1)}` : "to scale";
+  const legend = ["driving direction", stretched, ...(place.bends ? [] : ["m from the first front"])];
+  brush.fillText(fitting(brush, legend, tip - 28).reverse().join(" · "), tip - 23, 13);
 }
 
 function paintScale(brush, place) {
-  const step = [5, 10, 20, 50, 100].find((x) => x * place.along > 56) ?? 200;
+  const step = STEPS.find((x) => x * place.along > 56) ?? STEPS.at(-1);
   brush.fillStyle = colour("--faint");
   brush.strokeStyle = colour("--rule");
   brush.font = font(11);
@@ -164,11 +203,8 @@ function paintScale(brush, place) {
   for (let at = Math.ceil(place.low / step) * step; at <= place.high; at += step) {
     const x = (at - place.low) * place.along;
     stroke(brush, [[x, HEIGHT - MARGIN.bottom + 4], [x, HEIGHT - MARGIN.bottom + 8]]);
-    if (x > 16 && x < place.width - 16) brush.fillText(at === 0 ? "0" : `${at}`, x, HEIGHT - 6);
+    if (x > 22 && x < place.width - 22) brush.fillText(`${at || 0} m`, x, HEIGHT - 6);
   }
-  brush.textAlign = "right";
-  const stretched = place.stretch > 1 ? `across stretched ×${place.stretch.toFixed(1)}` : "to scale";
-  brush.fillText(`m from the first front · ${stretched} · driving direction →`, place.width - 6, 13);
 }
 
 /** Draw the RSS distance of the vehicle that has to keep it; return its label, if that fits. */
@@ -204,11 +240,10 @@ function paintRequired(brush, drive, distance, time, place, colours) {
 function labelDistance(brush, { at, below, words }, boxes, place) {
   brush.fillStyle = colour("--ink");
   brush.font = font(11);
-  brush.textAlign = "left";
   const [x, y] = place.point(...at);
-  const spot = { x: x + 8, y: y + below - LETTERS + 3, wide: brush.measureText(words).width, tall: LETTERS };
-  const isFree = ![...place.labels, ...boxes].some((other) => overlap(spot, other));
-  if (place.bends || isFree) write(brush, place, at, words, [8, below]);
+  const size = { wide: brush.measureText(words).width, tall: LETTERS };
+  const top = y + below - LETTERS + 3;
+  writeFree(brush, place, [[x + 8, top], [x + 60, top], [x + 110, top]], size, words, boxes, false);
 }
 
 function paintVehicle(brush, drive, name, time, place, colours) {
@@ -235,46 +270,20 @@ function paintVehicle(brush, drive, name, time, place, colours) {
 }
 
 /** Write the name of a vehicle beside its box, at the first place where it covers nothing. */
-function labelVehicle(brush, box, others, place) {
+function labelVehicle(brush, box, boxes, place) {
   brush.fillStyle = colour("--ink");
   brush.font = font(12, 600);
-  brush.textAlign = "left";
-  const wide = brush.measureText(box.words).width;
-  const inside = (x) => Math.max(2, Math.min(place.width - wide - 2, x));
-  const [middle, level] = [inside(box.x + box.wide / 2 - wide / 2), box.y + box.tall / 2 - LETTERS / 2];
-  const beside = [[box.x - 6 - wide, level], [box.x + box.wide + 6, level]].filter(([x]) => x === inside(x));
-  const [above, below] = [box.y - 3, box.y + box.tall + 3];
-  const rows = [0, 1, 2, 3].flatMap((k) => [[middle, above - (k + 1) * LETTERS], [middle, below + k * LETTERS]]);
-  const spots = (box.flat ? [...rows, ...beside] : [...beside, ...rows])
-    .filter(([, y]) => y >= 0 && y + LETTERS <= place.height)
-    .map(([x, y]) => ({ x, y, wide: wide + 6, tall: LETTERS }));
-  const isFree = (spot, taken) => !taken.some((other) => overlap(spot, other));
-  const spot =
-    spots.find((x) => isFree(x, [...place.labels, ...others])) ??
-    spots.find((x) => isFree(x, place.labels)) ?? { x: middle, y: level, wide, tall: LETTERS };
+  const size = { wide: brush.measureText(box.words).width + 6, tall: LETTERS };
+  writeFree(brush, place, placesBeside(box, size, place.within), size, box.words, boxes, true);
+}
+
+/** Write words at the first free place; no later words will cover them. `anywhere`: else wherever there is room. */
+function writeFree(brush, place, places, size, words, boxes, anywhere) {
+  const spot = placeWords(places, size, place.within, { words: place.labels, vehicles: boxes, anywhere });
+  if (spot === null) return;
   place.labels.push(spot);
-  brush.fillText(box.words, spot.x, spot.y + LETTERS - 3);
-}
-
-/** Whether two boxes in px overlap. */
-export function overlap(one, other) {
-  const across = Math.abs(one.x + one.wide / 2 - other.x - other.wide / 2);
-  const down = Math.abs(one.y + one.tall / 2 - other.y - other.tall / 2);
-  return 2 * across < one.wide + other.wide && 2 * down < one.tall + other.tall;
-}
-
-/** Write words beside a place of the road, in its direction; on a straight road no later label will cover them. */
-function write(brush, place, [s, d], words, [ahead, below]) {
-  const [x, y] = place.point(s, d);
-  if (!place.bends) {
-    const wide = brush.measureText(words).width;
-    place.labels.push({ x: x + ahead, y: y + below - LETTERS + 3, wide, tall: LETTERS });
-  }
-  brush.save();
-  brush.translate(...place.point(s, d));
-  brush.rotate(place.turn(s));
-  brush.fillText(words, ahead, below);
-  brush.restore();
+  brush.textAlign = "left";
+  brush.fillText(words, spot.x, spot.y + LETTERS - 3);
 }
 
 function trace(brush, points) {

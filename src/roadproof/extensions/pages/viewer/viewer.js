@@ -68,7 +68,7 @@ function useGutter(place) {
 
 function titleOf(formula, titles) {
   const title = titles[formula.role] ?? TITLES[formula.role] ?? formula.role;
-  return formula.role === "watch" ? `${title}: ${formula.formula}` : title;
+  return formula.role === "before" || formula.role === "after" ? title : `${title}: ${formula.text ?? formula.formula}`;
 }
 
 function Playhead({ drive, look }) {

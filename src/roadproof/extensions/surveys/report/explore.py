@@ -8,7 +8,7 @@ from textwrap import wrap
 from typing import Any, TypeAlias
 
 from roadproof.extensions.surveys.explore.explorable import Explorable, SweepVariable
-from roadproof.extensions.surveys.explore.values import ExplorationResult, SweepBoundary
+from roadproof.extensions.surveys.explore.values import ExplorationResult
 from roadproof.extensions.surveys.extremes.extreme import Extreme
 from roadproof.extensions.surveys.extremes.points import PointFinding
 from roadproof.extensions.surveys.report.cells import draw_cell, name_cells
@@ -22,6 +22,8 @@ from roadproof.library.words import words_of
 from roadproof.verdict import Verdict
 from roadproof.world.units import unit_text
 
+_PALE, _NARROWEST, _TITLE = 0.3, 7.5, 11
+"""The opacity between decided values; the least width of a map, in inches; letters of a title, an inch."""
 MOST_NOTES = 2  # for one verdict on a map or strip; JSON has them all
 # Reasons, each with its number.
 Notes: TypeAlias = dict[str, int]
@@ -227,13 +229,14 @@ def draw_exploration(explorable: Explorable, explored: ExplorationResult) -> Any
 def _draw_strip(explorable: Explorable, explored: ExplorationResult) -> Any:
     [variable] = explorable.variables
     measured = [x for x in explored.extremes if x.best is not None and x.point]
-    figure, made = make_figure([2.6, 0.7, 0.7] if measured else [0.7, 0.7], width=8.0)
+    keys = _keys_height(explored)
+    figure, made = make_figure([2.6, 0.7, keys] if measured else [0.7, keys], width=8.0)
     *above, axes, below = made
     places = [x.at[0] for x in explored.findings]
-    edges = [float(x) for x in (places[0], *_edges(places, explored.boundaries), places[-1])]
-    for x, low, high in zip(explored.findings, edges, edges[1:], strict=False):
-        axes.fill((low, high, high, low), (0, 0, 1, 1), color=COLOURS[x.verdict], ec="white", lw=0.8)
-    axes.plot([float(x) for x in places], [0.08] * len(places), color="#333333", marker="|", ms=6, lw=0)
+    for low, high, verdict in _stretches(explored):
+        axes.fill((low, high, high, low), (0, 0, 1, 1), color=COLOURS[verdict], alpha=_PALE, lw=0)
+    for x in _decided(explored):
+        axes.plot([float(x.at[0])] * 2, (0, 1), color=COLOURS[x.verdict], lw=3, solid_capstyle="butt")
     for boundary in explored.boundaries:
         inside, outside = float(boundary.inside.at[0]), float(boundary.outside.at[0])
         axes.plot((inside, inside), (0, 1), color="#222222", lw=1.4)
@@ -241,7 +244,7 @@ def _draw_strip(explorable: Explorable, explored: ExplorationResult) -> Any:
         axes.text(inside, 1.05, f"{inside:g}", fontsize=7, ha="center")
     axes.set_yticks([])
     axes.set_ylim(0, 1)
-    axes.set_xlabel(f"{variable.name}, {_unit(variable.unit)}", fontsize=8)
+    axes.set_xlabel(_axis(variable), fontsize=8)
     for one in (*above, axes):
         one.set_xlim(float(places[0]), float(places[-1]))
         one.tick_params(labelsize=7)
@@ -251,12 +254,17 @@ def _draw_strip(explorable: Explorable, explored: ExplorationResult) -> Any:
     return figure
 
 
-def _edges(places: Sequence[Fraction], boundaries: Sequence[SweepBoundary]) -> Iterator[Fraction]:
-    """Yield the ends of colours: inside the bracket of a boundary, or halfway between two values."""
-    brackets = [(x.inside.at[0], x.outside.at[0]) for x in boundaries]
-    for low, high in pairwise(places):
-        here = [pair for pair in brackets if all(low <= end <= high for end in pair)]
-        yield sum(here[0] if here else (low, high), Fraction(0)) / 2
+def _decided(explored: ExplorationResult) -> list[PointFinding]:
+    """Return the values that were decided, in order: those of the grid, and both sides of boundaries."""
+    beside = [y for x in explored.boundaries for y in (x.inside, x.outside, x.excluded) if y is not None]
+    return sorted((*explored.findings, *beside), key=lambda x: x.at[0])
+
+
+def _stretches(explored: ExplorationResult) -> Iterator[tuple[float, float, Verdict]]:
+    """Yield the stretches between decided values beside each other with the same verdict."""
+    for low, high in pairwise(_decided(explored)):
+        if low.verdict == high.verdict:
+            yield float(low.at[0]), float(high.at[0]), low.verdict
 
 
 def _draw_measures(axes: Any, measured: Sequence[Extreme]) -> None:
@@ -285,8 +293,8 @@ def _draw_map(explorable: Explorable, explored: ExplorationResult) -> Any:
     across, up = explorable.variables
     columns, rows = (variable.values(explorable.steps) for variable in explorable.variables)
     findings = {x.at: x for x in explored.findings}
-    width = max(5.0, 0.42 * len(columns) + 2.5)
-    figure, [axes, below] = make_figure([0.42 * len(rows) + 1.0, 0.7], width)
+    width = max(_NARROWEST, 0.42 * len(columns) + 2.5)
+    figure, [axes, below] = make_figure([0.42 * len(rows) + 1.0, _keys_height(explored)], width)
     for y, row in enumerate(rows):
         for x, column in enumerate(columns):
             cell = findings[column, row]
@@ -298,8 +306,8 @@ def _draw_map(explorable: Explorable, explored: ExplorationResult) -> Any:
     axes.set_xlim(0, len(columns))
     axes.set_ylim(0, len(rows))
     name_cells(axes, [*map(show, columns)], [*map(show, rows)], 7)
-    axes.set_xlabel(f"{across.name}, {_unit(across.unit)}; numbers in cells tell drives apart", fontsize=8)
-    axes.set_ylabel(f"{up.name}, {_unit(up.unit)}", fontsize=8)
+    axes.set_xlabel(f"{_axis(across)}; numbers in cells tell drives apart", fontsize=8)
+    axes.set_ylabel(_axis(up), fontsize=8)
     _finish(figure, below, explorable, explored)
     return figure
 
@@ -309,11 +317,28 @@ def _finish(figure: Any, below: Any, explorable: Explorable, explored: Explorati
     present = {x.verdict for x in explored.findings}
     for verdict in (v for v in SIGNS if v in present):
         below.fill([], [], color=COLOURS[verdict], label=f"{verdict}: {_meaning(verdict, explored.findings)}")
-    if len({x.has_drive for x in explored.findings}) > 1:
+    if len(explorable.variables) == 1:
+        pale = {"color": "#888888", "alpha": _PALE, "lw": 0}
+        below.fill([], [], label="pale: between decided values with the same verdict", **pale)
+        if explored.boundaries:
+            below.plot([], [], color="#222222", lw=1.4, label="the last value with a drive")
+            below.plot([], [], color="#222222", lw=1.4, ls=":", label="the nearest value without one")
+    elif len({x.has_drive for x in explored.findings}) > 1:
         below.plot([], [], color="#222222", lw=1.6, label="between values with and without a drive")
     below.legend(fontsize=7, loc="upper left", frameon=False)
     below.axis("off")
-    figure.suptitle("\n".join(wrap(_title(explorable), 80)), fontsize=9)
+    width = figure.get_size_inches()[0]
+    figure.suptitle("\n".join(wrap(_title(explorable), int(width * _TITLE))), fontsize=9)
+
+
+def _keys_height(explored: ExplorationResult) -> float:
+    """Return the inches of the legend: an entry for each verdict, and at most three more."""
+    return 0.17 * (len({x.verdict for x in explored.findings}) + 3) + 0.1
+
+
+def _axis(variable: SweepVariable) -> str:
+    """Return the name of an axis with its unit."""
+    return f"{variable.name} [{_unit(variable.unit) or 'no unit'}]"
 
 
 def _value(value: Fraction, unit: str) -> str:

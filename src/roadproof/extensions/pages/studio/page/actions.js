@@ -2,6 +2,7 @@
 
 import { batch } from "vendor/view";
 import { save } from "viewer/verdict";
+import { MOST } from "studio/answers";
 import { inOneStep } from "studio/history";
 import { currentQuestion, storeQuestion } from "studio/recent";
 import { ask } from "studio/server";
@@ -82,18 +83,19 @@ async function runJob(title, kind, question) {
 /** Add an answer to the list, and show its drive where it has one. */
 function addAnswer(answer, { show = true, compared = false } = {}) {
   batch(() => {
-    state.answers.value = [{ ...answer, key: Date.now() + Math.random() }, ...state.answers.value].slice(0, 6);
+    state.answers.value = [{ ...answer, key: Date.now() + Math.random() }, ...state.answers.value].slice(0, MOST);
     state.clashes.value = answer.marks ?? [];
     if (answer.drive && show) showDrive(answer.drive, answer.view, compared);
   });
 }
 
-/** Show a drive from its start. */
-export function showDrive(drive, view, compared = false) {
+/** Show a drive from its start; `asked`: the question that a view is about that is not asked for again. */
+export function showDrive(drive, view, compared = false, asked = "") {
   batch(() => {
     state.saved.drive.value = drive;
     state.saved.compared.value = compared;
     if (view) state.view.value = view;
+    if (drive === null) state.viewedQuestion.value = asked;
     state.resetView();
   });
 }
@@ -124,7 +126,7 @@ export async function find({ negated = false, next = false, fresh = false } = {}
   if (!answer) return;
   storeQuestion(request, answer.verdict);
   lastSearch = { text, count: answer.drive ? count : lastSearch.count };
-  addAnswer({ ...answer, again: () => find({ negated, fresh: true }) });
+  addAnswer({ ...answer, job: negated ? "without" : "find" });
 }
 
 /** Explain why the selected part of the question is true or false now, in the strips and in the text; or stop it. */
@@ -148,7 +150,12 @@ export async function prove({ fresh = false } = {}) {
   const answer = await runJob("Prove", "prove", { ...state.question.value, settings, fresh });
   if (!answer) return;
   storeQuestion(request, answer.verdict);
-  addAnswer({ ...answer, again: () => prove({ fresh: true }) });
+  addAnswer({ ...answer, job: "prove" });
+}
+
+/** Compute an answer again that was known; about the present question. */
+export function again({ job }) {
+  return job === "prove" ? prove({ fresh: true }) : find({ negated: job === "without", fresh: true });
 }
 
 /** Compare the question before and after the edit, in both directions at once; show each answer when it arrives. */
@@ -295,16 +302,17 @@ export async function showPair(row, number = null) {
     first: row.first_frame,
     last: row.last_frame,
   };
+  const asked = JSON.stringify(state.question.value);
   const question = { ...state.question.value, files: state.recording.value.contents, pair };
   const answer = await runJob(`Vehicles ${row.vehicles.join(", ")}`, "pair", question);
-  if (answer && state.pair.value === row) showRecorded(answer.view);
+  if (answer && state.pair.value === row) showRecorded(answer.view, asked);
 }
 
 /** Show a recorded trace. It is not in the address, since recordings are large. */
-function showRecorded(view) {
+function showRecorded(view, asked = JSON.stringify(state.question.peek())) {
   const row = state.pair.peek();
   batch(() => {
-    showDrive(null, view);
+    showDrive(null, view, false, asked);
     state.pair.value = row;
     state.look.selected.value = { formula: 0, key: "/0", id: 0 };
   });

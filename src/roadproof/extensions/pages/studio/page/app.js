@@ -6,12 +6,13 @@ import * as actions from "studio/actions";
 import { readAddress, writeAddress } from "studio/address";
 import { Bar, toggleTheme } from "studio/bar";
 import { followEdits } from "studio/live";
-import { followSets, Gallery, toGallery } from "studio/gallery";
+import { followSets, Gallery, shippedCards, toGallery } from "studio/gallery";
 import { followChanges, redo, undo } from "studio/history";
 import { examples } from "studio/recent";
 import { start, takeToken } from "studio/server";
 import { recall } from "studio/store";
 import { addWatch, Side } from "studio/side";
+import { followAnswers } from "studio/answers";
 import { endTour, startTour, Tour, welcome } from "studio/tour";
 import * as state from "studio/state";
 
@@ -73,8 +74,12 @@ function Keys() {
 
 function Main() {
   const doc = state.view.value;
-  const titles = { question: "Question, with the definitions of the editor", before: "Before the edit" };
-  return html`<main class="stage">
+  const isFormer = state.isFormer.value;
+  const titles = { question: isFormer ? "Former question" : "Question" };
+  return html`<main class=${`stage ${isFormer ? "former" : ""}`}>
+    ${doc && isFormer
+      ? html`<p class="wrong former" role="status">The strips are those of a former question: ${state.viewProblem.value.split("\n")[0] || "the present one is being judged"}</p>`
+      : null}
     ${doc
       ? html`<${Viewer} ...${{ doc, look: state.look, titles, theme: state.theme }} />`
       : html`<div class="empty">
@@ -140,6 +145,7 @@ async function main() {
   state.specs.value = content.specs;
   state.form.value = content.form;
   examples.value = content.examples;
+  shippedCards.value = content.cards;
   const addressed = await readAddress();
   if (addressed) state.applyState(addressed);
   else {
@@ -153,6 +159,7 @@ async function main() {
   document.addEventListener("dragover", (event) => event.preventDefault());
   document.addEventListener("drop", onDrop);
   addEventListener("popstate", async () => state.applyState((await readAddress()) ?? {}));
+  followAnswers();
   followAddress();
   followChanges();
   followEdits();

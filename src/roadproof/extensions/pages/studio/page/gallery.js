@@ -13,6 +13,7 @@ const SHARE = 4; // scenarios in one request
 const FIRST = 1;
 
 const cards = signal(new Map()); // of the chosen set, by number
+export const shippedCards = signal({}); // words and pictures by set, there before the server has read it
 const playing = signal(null); // the number of the card that plays
 export const isOpen = signal(isBeside() && recall("gallery", true));
 
@@ -38,23 +39,26 @@ export function toGallery() {
   else toggleGallery();
 }
 
+/** Load some cards of a set, if it is still the chosen one. */
+async function load(set, numbers) {
+  const isChosen = () => set === state.saved.base.peek();
+  if (!numbers.length || !isChosen()) return;
+  const reply = await ask("gallery", { draft: { base: set }, scenarios: numbers }).catch(() => ({}));
+  if (!reply.answer || !isChosen()) return;
+  const loaded = reply.answer.cards.map((x) => [x.number, { ...cards.peek().get(x.number), ...x }]);
+  cards.value = new Map([...cards.value, ...loaded]);
+}
+
 /** Load the cards of the chosen set, now and whenever another is chosen; `play`: start with scenario 1. */
 export function followSets(play) {
   let isFirst = play;
-  const isChosen = (set) => set === state.saved.base.peek();
-  const load = async (set, numbers) => {
-    if (!numbers.length || !isChosen(set)) return;
-    const reply = await ask("gallery", { draft: { base: set }, scenarios: numbers }).catch(() => ({}));
-    if (!reply.answer || !isChosen(set)) return;
-    cards.value = new Map([...cards.value, ...reply.answer.cards.map((x) => [x.number, x])]);
-  };
   effect(() => {
     const set = state.saved.base.value;
-    cards.value = new Map();
+    cards.value = new Map(shippedOf(set).map((x) => [x.number, { number: x.number, picture: x.picture }]));
     const loadAll = async () => {
       await load(set, [FIRST]);
       if (isFirst && isUntouched() && cards.peek().get(FIRST)?.drive) {
-        show(FIRST);
+        await show(FIRST);
         forgetSteps();
       }
       isFirst = false;
@@ -63,6 +67,11 @@ export function followSets(play) {
     };
     loadAll();
   });
+}
+
+/** Return the words and pictures of a set that come with the page. */
+function shippedOf(set) {
+  return shippedCards.peek()[set] ?? [];
 }
 
 function isUntouched() {
@@ -74,7 +83,8 @@ function isUntouched() {
 const numbersOf = (names) => names.scenarios.map((x) => x.number);
 
 /** Make a scenario the question, and show its known drive, or else search for one. */
-function show(number) {
+async function show(number) {
+  if (!cards.peek().get(number)?.formula) await load(state.saved.base.peek(), [number]);
   const card = cards.peek().get(number);
   inOneStep(() => {
     actions.setQuestion(card?.formula ?? String(number));
@@ -86,7 +96,7 @@ function show(number) {
 
 export function Gallery() {
   if (!isOpen.value) return null;
-  const scenarios = state.names.value?.scenarios ?? [];
+  const scenarios = state.names.value?.scenarios ?? shippedCards.value[state.saved.base.value] ?? [];
   const close = () => !isBeside() && toggleGallery();
   const onKey = (event) => {
     if (event.key === "Escape" && !isBeside()) {

@@ -84,10 +84,30 @@ export function followEdits() {
       if (sent.drive !== state.saved.drive.peek()) return;
       batch(() => {
         state.view.value = answer.view;
+        state.viewedQuestion.value = questionIn(sent);
+        state.viewProblem.value = "";
         if (state.autoplay.peek()) state.look.playing.value = true;
         state.autoplay.value = false;
       });
     },
-    () => {},
+    (reason) => (state.viewProblem.value = reason),
   );
+  followFormer();
+}
+
+/** Return the question of a request to show a drive, as JSON. */
+function questionIn({ draft, set, formula, watches }) {
+  return JSON.stringify({ draft, set, formula, watches });
+}
+
+/** Say that the view is about a former question once it has been so for a while, or there is none of the present. */
+function followFormer() {
+  let timer = 0;
+  effect(() => {
+    const isOther = state.view.value !== null && state.viewedQuestion.value !== JSON.stringify(state.question.value);
+    clearTimeout(timer);
+    if (!isOther) state.isFormer.value = false;
+    else if (state.viewProblem.value) state.isFormer.value = true;
+    else timer = setTimeout(() => (state.isFormer.value = true), LONGER);
+  });
 }

@@ -44,7 +44,7 @@ export function Side() {
       <h2>Answers</h2>
       ${state.answers.value.map(
         (x) => html`<${Verdict} key=${x.key} answer=${x} downloads=${downloadsOf(x)} onCopy=${actions.copy}
-          shows=${showsOf(x)} cost=${costOf(x)} onAgain=${x.cost?.known ? x.again : null} />`,
+          shows=${showsOf(x)} cost=${costOf(x)} onAgain=${x.cost?.known && x.job ? () => actions.again(x) : null} />`,
       )}
       ${state.answers.value.length ? null : html`<p class="faint">None yet: press Find a drive.</p>`}
     </section>
@@ -92,14 +92,16 @@ function Recording() {
       [m.SV, m.POV].sort().join() === [row.first, row.second].sort().join();
     return recording.matches.filter(same);
   };
+  const rows = recording.pairs.map((row) => ({ row, matches: scenariosOf(row) }));
+  rows.sort((a, b) => b.matches.length - a.matches.length); // equal ones stay in order
+  const matching = rows.filter((x) => x.matches.length).length;
   return html`<section class="pane recording" aria-label="Recording">
-    <h2>Recording <small>${recording.pairs.length} traces on which danger arises, ${recording.matches.length} matches</small>
+    <h2>Recording <small>${rows.length} traces on which danger arises; ${matching} match a scenario, these first</small>
       <span class="right"><button aria-label="Close the recording" onClick=${() => (state.recording.value = null)}>×</button></span>
     </h2>
     <div class="table"><table>
       <thead><tr><th>vehicles</th><th>frames</th><th>minDanger</th><th>scenarios</th></tr></thead>
-      <tbody>${recording.pairs.map((row) => {
-        const matches = scenariosOf(row);
+      <tbody>${rows.map(({ row, matches }) => {
         const show = (sv, pov, number) => actions.showPair({ ...row, vehicles: [sv, pov] }, number);
         return html`<tr>
           <td><button onClick=${() => show(row.first, row.second)}>${row.first}, ${row.second}</button></td>

@@ -13,6 +13,25 @@ export function recall(name, other = null) {
   }
 }
 
+/** Return the value that this tab stored under a name, or `other`; it is there after a reload. */
+export function recallInTab(name, other = null) {
+  try {
+    return JSON.parse(sessionStorage.getItem(PREFIX + name)) ?? other;
+  } catch {
+    return other;
+  }
+}
+
+/** Store plain data under a name for this tab; return whether there was room. */
+export function rememberInTab(name, value) {
+  try {
+    sessionStorage.setItem(PREFIX + name, JSON.stringify(value));
+    return true;
+  } catch {
+    return false;
+  }
+}
+
 /** Store plain data under a name. */
 export function remember(name, value) {
   memory.set(name, value);
