@@ -1,0 +1,348 @@
+"""The closed loop: POVs follow their courses, and SV does what its controller demands, step by step.
+
+Floating point guides a search. ``exact_drive`` runs the controller again on exact states; it alone decides.
+"""
+
+import math
+import signal
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from roadproof.extensions.closed_loop.errors import ControllerError
+from roadproof.extensions.closed_loop.protocol import (
+    ControllerInput,
+    ObservedLane,
+    ObservedVehicle,
+    VehicleController,
+)
+from roadproof.extensions.closed_loop.situation import TrafficSituation, VehicleCourse, values_of
+from roadproof.extensions.closed_loop.stepping import FINE, Body, limits_as
+from roadproof.runtime.records import dataclass
+from roadproof.world.drive import Drive, Motion, Piece
+
+Floats: TypeAlias = npt.NDArray[np.float64]
+SIGNALS = ("s", "d", "v_lon", "v_lat", "a_lon")
+_HALF = Fraction(1, 2)
+_LAST = Fraction(1)  # s in which a motion across the road ends after the last step
+_MOST = 1e6  # of a demand
+
+
+@dataclass(frozen=True)
+class VehicleSamples:
+    """The signals of one vehicle at each instant, shape (steps + 1,) or (steps + 1, simulations)."""
+
+    s: Floats
+    d: Floats
+    v_lon: Floats
+    v_lat: Floats
+    a_lon: Floats
+
+
+# --- POVs ----------------------------------------------------------------------------------------
+
+
+def follow(courses: Sequence[VehicleCourse], situation: TrafficSituation, name: str) -> VehicleSamples:
+    """Return the motion of POV in several simulations, which share clock and limits."""
+    steps, dt = situation.clock.steps, float(situation.clock.dt)
+    least, greatest, top, across, sideways, share = (
+        float(x) for x in limits_as(situation.limits[name], float)
+    )
+    shape = (steps + 1, len(courses))
+    s, d, v, u, a = (np.zeros(shape) for _ in SIGNALS)
+    along = np.array([_floats(x.along, steps) for x in courses]).T
+    aside = np.array([_floats(x.across, steps) for x in courses]).T
+    along = np.clip(along, least, greatest)
+    aside = np.clip(aside, -across, across)
+    for row, key in ((s, "s"), (d, "d"), (v, "v_lon"), (u, "v_lat")):
+        row[0] = [float(getattr(x, key)) for x in courses]
+    moves = bool(np.any(aside)) or bool(np.any(u[0]))
+    for k in range(steps):
+        faster = np.clip(v[k] + along[k] * dt, 0.0, top)
+        a[k] = (faster - v[k]) / dt
+        s[k + 1] = s[k] + (v[k] + faster) * (dt / 2)
+        v[k + 1] = faster
+        if moves:
+            most = np.minimum(share * faster, sideways)
+            turned = np.clip(u[k] + aside[k] * dt, -most, most)
+            d[k + 1] = d[k] + (u[k] + turned) * (dt / 2)
+            u[k + 1] = turned
+        else:
+            d[k + 1] = d[k]
+    return VehicleSamples(s, d, v, u, a)
+
+
+def _floats(phases: Any, steps: int) -> Floats:
+    values = np.zeros(steps)
+    for x in phases:
+        values[max(0, x.begin) : max(0, x.begin + x.count)] = float(x.acceleration)
+    return values
+
+
+# --- SV ------------------------------------------------------------------------------------------
+
+
+def lanes_of(situation: TrafficSituation) -> tuple[ObservedLane, ...]:
+    """Return the lanes of a road from the right, each with its outermost edges."""
+    edges: dict[str, tuple[float, float]] = {}
+    for x in situation.road.lanelets:
+        right, left = map(float, x.d)
+        low, high = edges.get(x.lane, (right, left))
+        edges[x.lane] = min(low, right), max(high, left)
+    lanes = (ObservedLane(name, *edge) for name, edge in edges.items())
+    return tuple(sorted(lanes, key=lambda lane: (lane.right, lane.name)))
+
+
+def _seen(name: str, course: VehicleCourse) -> ObservedVehicle:
+    return ObservedVehicle(
+        name,
+        float(course.s),
+        float(course.d),
+        float(course.v_lon),
+        float(course.v_lat),
+        0.0,
+        float(course.length),
+        float(course.width),
+    )
+
+
+class ControlLoop:
+    """A controller with its time-out: ``patience`` is the greatest duration of a simulation (s)."""
+
+    def __init__(self, controller: VehicleController, patience: float) -> None:
+        self.controller, self.patience = controller, patience
+
+    def run(
+        self, situation: TrafficSituation, others: Mapping[str, Sequence[Sequence[float]]]
+    ) -> VehicleSamples:
+        """Return the motion of SV; ``others``: SIGNALS of each POV as lists of floats.
+
+        Raises ``ControllerError``.
+        """
+        clock, course = situation.clock, situation.courses[situation.subject]
+        dt = float(clock.dt)
+        body = Body(
+            float(course.s), float(course.d), float(course.v_lon), float(course.v_lat), dt, 0.5,
+            limits_as(situation.limits[situation.subject], float),
+        )  # fmt: skip
+        rows: list[tuple[float, float, float, float]] = []
+        pushes: list[float] = []
+
+        def move(a_lon: float, a_lat: float, seen: ControllerInput) -> None:
+            """Advance SV by a step."""
+            rows.append((body.s, body.d, body.v_lon, body.v_lat))
+            body.move(a_lon, a_lat)
+            pushes.append(body.a_lon)
+            me = seen.me
+            me.s, me.d, me.v_lon, me.v_lat, me.a_lon = body.s, body.d, body.v_lon, body.v_lat, body.a_lon
+
+        columns = [others[name] for name in situation.others]
+        with patient(self.patience):
+            self._drive(situation, body, columns, move)
+        rows.append((body.s, body.d, body.v_lon, body.v_lat))
+        pushes.append(0.0)
+        s, d, v, u = (np.array(x) for x in zip(*rows, strict=True))
+        return VehicleSamples(s, d, v, u, np.array(pushes))
+
+    def _drive(
+        self,
+        situation: TrafficSituation,
+        body: Any,
+        columns: Sequence[Sequence[Sequence[float]]],
+        move: Callable[[Any, Any, ControllerInput], None],
+    ) -> None:
+        """Ask the controller in each step. Raises ``ControllerError``."""
+        clock, course = situation.clock, situation.courses[situation.subject]
+        number = type(body.s)
+        dt, lanes = float(clock.dt), lanes_of(situation)
+        plan = [number(x) for x in values_of(course.across, clock.steps)]
+        me = _seen(situation.subject, course)
+        seen = tuple(_seen(name, situation.courses[name]) for name in situation.others)
+        now = ControllerInput(0.0, me, seen, lanes)
+        time, step, width = 0.0, self.controller.step, number(course.width)
+        places = {x.name: (number(Fraction(x.left)) + number(Fraction(x.right)) + width) / 2 for x in lanes}
+        try:
+            _see(seen, columns, 0)
+            self.controller.reset(now)
+            for k in range(clock.steps):
+                now.time = time = k * dt
+                if k:
+                    _see(seen, columns, k)
+                now.plan = float(body.v_lat + plan[k] * body.dt)
+                answer = step(now, dt)
+                if answer.__class__ is float:
+                    demand, aside = answer, None
+                else:
+                    demand, aside = _parts(answer)
+                if not -_MOST < demand < _MOST:
+                    raise ControllerError(f"it demands an acceleration of {demand}: demand a finite number")
+                if aside is None:
+                    a_lat = plan[k]
+                elif isinstance(aside, str):
+                    if aside not in places:
+                        raise ControllerError(
+                            f"it demands the lane {aside!r}: the road has {', '.join(places)}"
+                        )
+                    a_lat = body.push_to(aside, places[aside])
+                else:
+                    a_lat = body.towards(_rounded(aside, number))
+                move(_rounded(demand, number), a_lat, now)
+        except ControllerError as error:
+            raise ControllerError(f"{error} (at {time:g} s)") from None
+        except _LateError:
+            raise ControllerError(
+                f"no answer within {self.patience:g} s for a whole simulation (at {time:g} s); raise "
+                "--patience if it is slow by design"
+            ) from None
+        except Exception as error:  # whatever the code of a user does
+            raise ControllerError(f"{type(error).__name__}: {error} (at {time:g} s)") from error
+
+
+def _see(seen: Sequence[ObservedVehicle], columns: Sequence[Sequence[Sequence[float]]], k: int) -> None:
+    for vehicle, (s, d, v, u, a) in zip(seen, columns, strict=True):
+        vehicle.s, vehicle.d, vehicle.v_lon, vehicle.v_lat, vehicle.a_lon = s[k], d[k], v[k], u[k], a[k]
+
+
+def _rounded(value: float, number: Any) -> Any:
+    fine = round(value * FINE)
+    return Fraction(fine, FINE) if number is Fraction else fine / FINE
+
+
+def _parts(answer: Any) -> tuple[float, float | str | None]:
+    """Return both parts of a demand. Raises ``ControllerError`` for anything else."""
+    demand, aside = answer if isinstance(answer, tuple | list) and len(answer) == 2 else (answer, None)
+    numbers = (int, float, np.integer, np.floating)
+    if not isinstance(demand, numbers) or isinstance(demand, bool):
+        raise ControllerError(
+            f"it demands {answer!r:.60}: return an acceleration (m/s^2), or that and a velocity across the "
+            "road (m/s) or the name of a lane"
+        )
+    if aside is None or isinstance(aside, str):
+        return float(demand), aside
+    if not isinstance(aside, numbers) or isinstance(aside, bool) or not math.isfinite(aside):
+        raise ControllerError(
+            f"it demands {aside!r:.60} across the road: return m/s, the name of a lane or None"
+        )
+    return float(demand), float(aside)
+
+
+class _LateError(Exception):
+    """The time of a simulation is over."""
+
+
+@contextmanager
+def patient(seconds: float) -> Iterator[None]:
+    """Interrupt what takes longer; only the main thread of a process can be interrupted."""
+    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def ring(number: int, frame: object) -> None:
+        raise _LateError
+
+    former = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, former)
+
+
+# --- exact drives --------------------------------------------------------------------------------
+
+
+def exact_drive(loop: ControlLoop, situation: TrafficSituation) -> Drive:
+    """Return the drive of a simulation, with exact states throughout. Raises ``ControllerError``.
+
+    The controller drives twice, and has to do the same both times.
+    """
+    once, again = (_exact_run(loop, situation) for _ in range(2))
+    if once != again:
+        raise ControllerError(_difference(once, again, situation))
+    return once
+
+
+def _exact_run(loop: ControlLoop, situation: TrafficSituation) -> Drive:
+    motions: dict[str, Motion] = {}
+    columns: list[list[list[float]]] = []
+    for name in situation.others:
+        course = situation.courses[name]
+        steps = situation.clock.steps
+        along, across = values_of(course.along, steps), values_of(course.across, steps)
+        rows: list[list[float]] = [[] for _ in SIGNALS]
+        body = _body(situation, name)
+        pushes: list[tuple[Fraction, Fraction]] = []
+        for k in range(steps):
+            for row, x in zip(rows, (body.s, body.d, body.v_lon, body.v_lat), strict=False):
+                row.append(float(x))
+            body.move(along[k], across[k])
+            rows[4].append(float(body.a_lon))
+            pushes.append((body.a_lon, body.a_lat))
+        columns.append(rows)
+        motions[name] = _motion(situation, name, pushes)
+    me = situation.subject
+    body, mine = _body(situation, me), list[tuple[Fraction, Fraction]]()
+
+    def move(a_lon: Fraction, a_lat: Fraction, seen: ControllerInput) -> None:
+        """Advance SV by a step."""
+        body.move(a_lon, a_lat)
+        mine.append((body.a_lon, body.a_lat))
+        it = seen.me
+        it.s, it.d, it.v_lon = float(body.s), float(body.d), float(body.v_lon)
+        it.v_lat, it.a_lon = float(body.v_lat), float(body.a_lon)
+
+    with patient(loop.patience):
+        loop._drive(situation, body, columns, move)
+    return Drive({me: _motion(situation, me, mine), **motions})
+
+
+def _body(situation: TrafficSituation, name: str) -> Any:
+    x = situation.courses[name]
+    limits = limits_as(situation.limits[name], Fraction)
+    return Body(x.s, x.d, x.v_lon, x.v_lat, situation.clock.dt, _HALF, limits)
+
+
+def _motion(situation: TrafficSituation, name: str, pushes: Sequence[tuple[Fraction, Fraction]]) -> Motion:
+    """Return the motion of a vehicle: after the last step it keeps its speed, and goes straight on."""
+    course, dt = situation.courses[name], situation.clock.dt
+    pieces: list[Piece] = []
+    for k, (a_lon, a_lat) in enumerate(pushes):
+        if k and pushes[k - 1] == (a_lon, a_lat):
+            former = pieces.pop()
+            assert former.duration is not None
+            pieces.append(Piece(former.duration + dt, a_lon, a_lat))
+        else:
+            pieces.append(Piece(dt, a_lon, a_lat))
+    drift = course.v_lat + sum((a_lat * dt for _, a_lat in pushes), Fraction(0))
+    if drift:
+        pieces.append(Piece(_LAST, Fraction(0), -drift / _LAST))
+    still = Piece(None, Fraction(0), Fraction(0))
+    return Motion(
+        course.length,
+        course.width,
+        course.s,
+        course.d,
+        course.v_lon,
+        course.v_lat,
+        (*pieces, still),
+        course.kind,
+    )
+
+
+def _difference(once: Drive, again: Drive, situation: TrafficSituation) -> str:
+    me, time = situation.subject, Fraction(0)
+    pairs = zip(once.vehicles[me].pieces, again.vehicles[me].pieces, strict=False)
+    for one, other in pairs:
+        if (one.a_lon, one.a_lat, one.duration) != (other.a_lon, other.a_lat, other.duration):
+            break
+        time += one.duration or 0
+    return (
+        "it is not deterministic: after a reset with the same state, its demands differ from "
+        f"{float(time):g} s on; draw random numbers from a generator that reset() seeds, and forget the rest"
+    )
