@@ -9,7 +9,11 @@ WANDER, EVALUATION, DELAY, RAMP, FULL = 0.375, 0.4, 0.75, 0.6, 0.774 * 9.81
 
 class Careful:
     def reset(self, observation):
-        self.start = {x.name: x.d for x in observation.others}
+        self.middle = {}
+        for x in observation.others:
+            centre = x.d - x.width / 2
+            lanes = [y for y in observation.lanes if y.right <= centre <= y.left]
+            self.middle[x.name] = (lanes[0].right + lanes[0].left) / 2 if lanes else centre
         self.onset = None
 
     def step(self, observation, dt):
@@ -27,6 +31,6 @@ class Careful:
         in_way = other.d >= me.d - me.width and me.d >= other.d - other.width
         if in_way and other.a_lon < 0 and other.v_lon < me.v_lon + 1:
             return DELAY
-        if abs(other.d - self.start[other.name]) > WANDER:
+        if abs(other.d - other.width / 2 - self.middle[other.name]) > WANDER:
             return EVALUATION + DELAY
         return None

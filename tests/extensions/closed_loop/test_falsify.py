@@ -280,3 +280,21 @@ def test_a_failure_is_made_simple(late: Falsification) -> None:
         assert x.simulations is not None
         known = x.simulations.values
         assert any(value % 5 == 0 for name, value in known.items() if name.endswith((".gap", ".speed")))
+
+
+def test_a_page_plays_the_failing_drive_beside_those_of_the_driver_models(
+    late: Falsification, tmp_path: Path
+) -> None:
+    assert late.folder is not None
+    rp.page(late.folder, out=tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text("utf-8")
+    for x in ("scenario_1", "scenario_4"):
+        assert f'id="fails-0-{x}"' in text
+        assert f'id="fails-0-{x}-careful"' in text
+    assert "The drive cannot be shown" not in text
+    assert text.count("<circle") >= sum(x.simulations.count for x in late.targets if x.simulations)
+
+
+def test_build_servers_read_each_scenario(late: Falsification) -> None:
+    assert late.to_junit().count("<failure") == 2
+    assert "preventable by careful" in late.to_sarif()

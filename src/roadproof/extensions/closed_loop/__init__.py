@@ -7,11 +7,12 @@ EXTENSION = Extension(
     audience="testers",
     label="incubating",
     page="docs/tutorials/closed-loop.md",
-    needs=("catalogue", "drivers", "exchange", "surveys", "traffic"),
+    needs=("catalogue", "drivers", "exchange", "pages", "surveys", "traffic"),
     functions={"falsify": "falsifying:falsify"},
     questions={"falsify": "question:FalsifyQuestion"},
     answers={"falsify": "falsifying:Falsification"},
     evidence={"roadproof/simulations/1": "simulations_file:SimulationsFile"},
     specifications={"closed_loop": "closed_loop.spec"},
+    sections={"falsify": "page:FALSIFY"},
     schemas=("schemas:TITLES",),
 )

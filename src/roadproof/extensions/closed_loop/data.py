@@ -6,6 +6,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import headings, shared
 from roadproof.evidence.codec import Doc, Rule
+from roadproof.evidence.schema_notes import FileOrEvidence
 from roadproof.extensions.closed_loop.search.searching import Method, Wanted
 from roadproof.extensions.drivers.verdict import DriverVerdict
 from roadproof.runtime.records import dataclass
@@ -63,6 +64,15 @@ class TargetResult:
     shown_by: Annotated[tuple[str, ...], Doc("Names of the drives that show it.")]
     failing: Annotated[shared.DriveField, Doc("The failing drive: its file, or itself without a folder.")]
     values: Annotated[Mapping[str, float], Doc("How the failing drive begins, and what POV does (SI).")]
+    driven: Annotated[
+        Mapping[str, shared.DriveField],
+        Doc("By driver model, its drive in the place of SV in the failing drive."),
+    ]
+    simulated: Annotated[
+        object,
+        FileOrEvidence(("simulations.json",)),
+        Doc("All simulations: their file, or themselves without a folder; null where there was no search."),
+    ]
     drivers: Annotated[
         tuple[DriverVerdict, ...], Doc("Driver models in the place of SV in the failing drive.")
     ]

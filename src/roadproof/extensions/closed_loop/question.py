@@ -117,7 +117,8 @@ class FalsifyQuestion:
         classes = self.formulas.classes
         assert classes is not None
         one = next(x for x in classes.all() if x.name == target)
-        return "scenarios " + ", ".join(map(str, one.scenarios)) + " together"
+        numbers = ", ".join(map(str, one.scenarios))
+        return f"scenario{'s' * (len(one.scenarios) > 1)} {numbers} and no other"
 
     # --- claims --------------------------------------------------------------------------------------
 

@@ -6,7 +6,7 @@ Floating point guides a search. ``exact_drive`` runs the controller again on exa
 import math
 import signal
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any, TypeAlias
@@ -25,9 +25,12 @@ from roadproof.extensions.closed_loop.situation import TrafficSituation, Vehicle
 from roadproof.extensions.closed_loop.stepping import FINE, Body, limits_as
 from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Drive, Motion, Piece
+from roadproof.world.road import Road
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 SIGNALS = ("s", "d", "v_lon", "v_lat", "a_lon")
+Rows: TypeAlias = "Sequence[tuple[Any, ...]]"
+"""The values of several signals in each step."""
 _HALF = Fraction(1, 2)
 _LAST = Fraction(1)  # s in which a motion across the road ends after the last step
 _MOST = 1e6  # of a demand
@@ -87,10 +90,10 @@ def _floats(phases: Any, steps: int) -> Floats:
 # --- SV ------------------------------------------------------------------------------------------
 
 
-def lanes_of(situation: TrafficSituation) -> tuple[ObservedLane, ...]:
+def lanes_of(road: Road) -> tuple[ObservedLane, ...]:
     """Return the lanes of a road from the right, each with its outermost edges."""
     edges: dict[str, tuple[float, float]] = {}
-    for x in situation.road.lanelets:
+    for x in road.lanelets:
         right, left = map(float, x.d)
         low, high = edges.get(x.lane, (right, left))
         edges[x.lane] = min(low, right), max(high, left)
@@ -116,96 +119,102 @@ class ControlLoop:
 
     def __init__(self, controller: VehicleController, patience: float) -> None:
         self.controller, self.patience = controller, patience
+        self._lanes: tuple[Road, tuple[ObservedLane, ...]] | None = None
 
-    def run(
-        self, situation: TrafficSituation, others: Mapping[str, Sequence[Sequence[float]]]
-    ) -> VehicleSamples:
-        """Return the motion of SV; ``others``: SIGNALS of each POV as lists of floats.
+    def run(self, situation: TrafficSituation, others: Mapping[str, Rows]) -> VehicleSamples:
+        """Return the motion of SV; ``others``: the SIGNALS of each POV in each step.
 
         Raises ``ControllerError``.
         """
-        clock, course = situation.clock, situation.courses[situation.subject]
-        dt = float(clock.dt)
-        body = Body(
-            float(course.s), float(course.d), float(course.v_lon), float(course.v_lat), dt, 0.5,
-            limits_as(situation.limits[situation.subject], float),
-        )  # fmt: skip
-        rows: list[tuple[float, float, float, float]] = []
-        pushes: list[float] = []
-
-        def move(a_lon: float, a_lat: float, seen: ControllerInput) -> None:
-            """Advance SV by a step."""
-            rows.append((body.s, body.d, body.v_lon, body.v_lat))
-            body.move(a_lon, a_lat)
-            pushes.append(body.a_lon)
-            me = seen.me
-            me.s, me.d, me.v_lon, me.v_lat, me.a_lon = body.s, body.d, body.v_lon, body.v_lat, body.a_lon
-
-        columns = [others[name] for name in situation.others]
+        course, dt = situation.courses[situation.subject], float(situation.clock.dt)
+        limits = limits_as(situation.limits[situation.subject], float)
+        place = float(course.s), float(course.d), float(course.v_lon), float(course.v_lat)
+        body: Body[Any] = Body(*place, dt, 0.5, limits)
         with patient(self.patience):
-            self._drive(situation, body, columns, move)
-        rows.append((body.s, body.d, body.v_lon, body.v_lat))
-        pushes.append(0.0)
-        s, d, v, u = (np.array(x) for x in zip(*rows, strict=True))
-        return VehicleSamples(s, d, v, u, np.array(pushes))
+            rows = self.drive(situation, body, [others[name] for name in situation.others])
+        s, d, v, u, a, _ = (np.array(x) for x in zip(*rows, strict=True))
+        return VehicleSamples(s, d, v, u, a)
 
-    def _drive(
-        self,
-        situation: TrafficSituation,
-        body: Any,
-        columns: Sequence[Sequence[Sequence[float]]],
-        move: Callable[[Any, Any, ControllerInput], None],
-    ) -> None:
-        """Ask the controller in each step. Raises ``ControllerError``."""
+    def drive(self, situation: TrafficSituation, body: Body[Any], others: Sequence[Rows]) -> Rows:
+        """Ask the controller in each step; return SIGNALS and the acceleration across, at each instant.
+
+        Numbers are of the kind of ``body``. Raises ``ControllerError``.
+        """
         clock, course = situation.clock, situation.courses[situation.subject]
-        number = type(body.s)
-        dt, lanes = float(clock.dt), lanes_of(situation)
-        plan = [number(x) for x in values_of(course.across, clock.steps)]
+        number, dt, steps = type(body.s), float(clock.dt), clock.steps
+        is_exact = number is Fraction
+        lanes = self._lanes_of(situation.road)
+        places = _places(lanes, number(course.width), number)
+        plan: Any = values_of(course.across, steps) if is_exact else _floats(course.across, steps).tolist()
         me = _seen(situation.subject, course)
         seen = tuple(_seen(name, situation.courses[name]) for name in situation.others)
-        now = ControllerInput(0.0, me, seen, lanes)
-        time, step, width = 0.0, self.controller.step, number(course.width)
-        places = {x.name: (number(Fraction(x.left)) + number(Fraction(x.right)) + width) / 2 for x in lanes}
+        pairs = list(zip(seen, others, strict=True))
+        now, rows = ControllerInput(0.0, me, seen, lanes), list[tuple[Any, ...]]()
+        step, time, keeps_lane = self.controller.step, 0.0, not course.across
         try:
-            _see(seen, columns, 0)
+            for vehicle, track in pairs:
+                vehicle.s, vehicle.d, vehicle.v_lon, vehicle.v_lat, vehicle.a_lon = track[0]
             self.controller.reset(now)
-            for k in range(clock.steps):
+            for k in range(steps):
                 now.time = time = k * dt
-                if k:
-                    _see(seen, columns, k)
-                now.plan = float(body.v_lat + plan[k] * body.dt)
+                for vehicle, track in pairs:
+                    vehicle.s, vehicle.d, vehicle.v_lon, vehicle.v_lat, vehicle.a_lon = track[k]
+                now.plan = float(body.v_lat) if keeps_lane else float(body.v_lat + plan[k] * body.dt)
                 answer = step(now, dt)
-                if answer.__class__ is float:
-                    demand, aside = answer, None
-                else:
-                    demand, aside = _parts(answer)
+                demand, aside = (answer, None) if answer.__class__ is float else _parts(answer)
                 if not -_MOST < demand < _MOST:
                     raise ControllerError(f"it demands an acceleration of {demand}: demand a finite number")
-                if aside is None:
-                    a_lat = plan[k]
-                elif isinstance(aside, str):
-                    if aside not in places:
-                        raise ControllerError(
-                            f"it demands the lane {aside!r}: the road has {', '.join(places)}"
-                        )
-                    a_lat = body.push_to(aside, places[aside])
+                a_lat = plan[k] if aside is None else _sideways(body, aside, places)
+                s, d, v, u = body.s, body.d, body.v_lon, body.v_lat
+                fine = round(demand * FINE)
+                demanded: Any = Fraction(fine, FINE) if is_exact else fine / FINE
+                body.move(demanded, a_lat)
+                rows.append((s, d, v, u, body.a_lon, body.a_lat))
+                if is_exact:
+                    me.s, me.d, me.v_lon = float(body.s), float(body.d), float(body.v_lon)
+                    me.v_lat, me.a_lon = float(body.v_lat), float(body.a_lon)
                 else:
-                    a_lat = body.towards(_rounded(aside, number))
-                move(_rounded(demand, number), a_lat, now)
-        except ControllerError as error:
-            raise ControllerError(f"{error} (at {time:g} s)") from None
-        except _LateError:
-            raise ControllerError(
+                    me.s, me.d, me.v_lon, me.v_lat, me.a_lon = (
+                        body.s,
+                        body.d,
+                        body.v_lon,
+                        body.v_lat,
+                        body.a_lon,
+                    )
+        except Exception as error:  # whatever the code of a user does
+            raise self._error(error, time) from error
+        rows.append((body.s, body.d, body.v_lon, body.v_lat, 0, 0))
+        return rows
+
+    def _lanes_of(self, road: Road) -> tuple[ObservedLane, ...]:
+        """Return the lanes of a road; those of the latest road are remembered."""
+        if self._lanes is None or self._lanes[0] is not road:
+            self._lanes = road, lanes_of(road)
+        return self._lanes[1]
+
+    def _error(self, error: Exception, time: float) -> ControllerError:
+        """Return the error that says what the controller did, and when."""
+        if isinstance(error, _LateError):
+            return ControllerError(
                 f"no answer within {self.patience:g} s for a whole simulation (at {time:g} s); raise "
                 "--patience if it is slow by design"
-            ) from None
-        except Exception as error:  # whatever the code of a user does
-            raise ControllerError(f"{type(error).__name__}: {error} (at {time:g} s)") from error
+            )
+        name = "" if isinstance(error, ControllerError) else f"{type(error).__name__}: "
+        return ControllerError(f"{name}{error} (at {time:g} s)")
 
 
-def _see(seen: Sequence[ObservedVehicle], columns: Sequence[Sequence[Sequence[float]]], k: int) -> None:
-    for vehicle, (s, d, v, u, a) in zip(seen, columns, strict=True):
-        vehicle.s, vehicle.d, vehicle.v_lon, vehicle.v_lat, vehicle.a_lon = s[k], d[k], v[k], u[k], a[k]
+def _places(lanes: Sequence[ObservedLane], width: Any, number: Any) -> dict[str, Any]:
+    """Return the place (d) of the left side of SV in the middle of each lane."""
+    return {x.name: (number(x.left + x.right) + width) / 2 for x in lanes}
+
+
+def _sideways(body: Body[Any], aside: float | str, places: Mapping[str, Any]) -> Any:
+    """Return the acceleration across the road that a demand needs. Raises ``ControllerError``."""
+    if not isinstance(aside, str):
+        return body.towards(_rounded(aside, type(body.s)))
+    if aside not in places:
+        raise ControllerError(f"it demands the lane {aside!r}: the road has {', '.join(places)}")
+    return body.push_to(aside, places[aside])
 
 
 def _rounded(value: float, number: Any) -> Any:
@@ -270,35 +279,25 @@ def exact_drive(loop: ControlLoop, situation: TrafficSituation) -> Drive:
 
 def _exact_run(loop: ControlLoop, situation: TrafficSituation) -> Drive:
     motions: dict[str, Motion] = {}
-    columns: list[list[list[float]]] = []
+    columns: list[Rows] = []
+    steps = situation.clock.steps
     for name in situation.others:
         course = situation.courses[name]
-        steps = situation.clock.steps
         along, across = values_of(course.along, steps), values_of(course.across, steps)
-        rows: list[list[float]] = [[] for _ in SIGNALS]
+        rows: list[tuple[Any, ...]] = []
         body = _body(situation, name)
         pushes: list[tuple[Fraction, Fraction]] = []
         for k in range(steps):
-            for row, x in zip(rows, (body.s, body.d, body.v_lon, body.v_lat), strict=False):
-                row.append(float(x))
+            place = float(body.s), float(body.d), float(body.v_lon), float(body.v_lat)
             body.move(along[k], across[k])
-            rows[4].append(float(body.a_lon))
+            rows.append((*place, float(body.a_lon)))
             pushes.append((body.a_lon, body.a_lat))
         columns.append(rows)
         motions[name] = _motion(situation, name, pushes)
     me = situation.subject
-    body, mine = _body(situation, me), list[tuple[Fraction, Fraction]]()
-
-    def move(a_lon: Fraction, a_lat: Fraction, seen: ControllerInput) -> None:
-        """Advance SV by a step."""
-        body.move(a_lon, a_lat)
-        mine.append((body.a_lon, body.a_lat))
-        it = seen.me
-        it.s, it.d, it.v_lon = float(body.s), float(body.d), float(body.v_lon)
-        it.v_lat, it.a_lon = float(body.v_lat), float(body.a_lon)
-
     with patient(loop.patience):
-        loop._drive(situation, body, columns, move)
+        driven = loop.drive(situation, _body(situation, me), columns)
+    mine = [(a_lon, a_lat) for *_, a_lon, a_lat in driven[:-1]]
     return Drive({me: _motion(situation, me, mine), **motions})
 
 

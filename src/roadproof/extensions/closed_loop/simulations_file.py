@@ -77,5 +77,5 @@ class SimulationsFile(OwnEvidence):
             "",
             self.claim,
             () if problem else (f"{self.count} simulations counted",),
-            ("what the controller does in them: see falsify --replay",),
+            ("what the controller does in them",),
         )

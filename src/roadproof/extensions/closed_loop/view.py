@@ -30,20 +30,26 @@ class TargetView:
     """A scenario or a class: its finding with the answers behind it.
 
     ``decisions``: those of driver models on the failing drive, each confirmed by a judged drive; ``driven``:
-    these drives by model. ``simulations``: None where no search was made for it. ``shown_by``: the names of
-    all drives of the controller that show it.
+    these drives by model. ``simulated``: the answer about all simulations, None where there was no search.
+    ``shown_by``: the names of all drives of the controller that show it.
     """
 
     name: str
     title: str
     finding: Finding
-    simulations: SimulationsFile | None = None
+    simulated: ClaimAnswer | None = None
     failing: ClaimAnswer | None = None
     shown: ClaimAnswer | None = None
     shown_by: tuple[str, ...] = ()
     decisions: tuple[Decision, ...] = ()
     driven: Mapping[str, ClaimAnswer] = field(default_factory=dict)
     reason: Reason = NO_REASON
+
+    @property
+    def simulations(self) -> SimulationsFile | None:
+        """All simulations of the search; None where there was none, or its process ended."""
+        evidence = None if self.simulated is None else self.simulated.evidence
+        return evidence if isinstance(evidence, SimulationsFile) else None
 
     @property
     def is_scenario(self) -> bool:
@@ -106,12 +112,11 @@ def _target(question: FalsifyQuestion, name: str, known: Answers, shown_by: tupl
     possible, simulated, failing, shown = (
         known.get(claim_name(part, name)) for part in (POSSIBLE, SIMULATED, FAILS, SHOWN)
     )
-    evidence = None if simulated is None else simulated.evidence
     made = TargetView(
         name,
         question.title(name),
         "NOT SHOWN",
-        evidence if isinstance(evidence, SimulationsFile) else None,
+        simulated,
         failing,
         shown,
         shown_by,
@@ -173,6 +178,8 @@ def _data(x: TargetView, place: EvidencePlace) -> TargetResult:
         shown_by=x.shown_by,
         failing=place(claim_name(FAILS, x.name), failing) if has_drive and failing is not None else None,
         values={} if file is None else file.values,
+        driven={name: place(claim_name(FAILS, x.name, name), y) for name, y in x.driven.items() if y.drive},
+        simulated=None if x.simulated is None else place(claim_name(SIMULATED, x.name), x.simulated),
         drivers=tuple(map(_driver, x.decisions)),
         reason=x.reason,
     )

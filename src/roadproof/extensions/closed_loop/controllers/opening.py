@@ -34,7 +34,7 @@ def source_of(text: str) -> ControllerSource:
         from roadproof.extensions.closed_loop.controllers.python_file import digest_of
 
         return ControllerSource(text, "python", digest_of(Path(match["file"]), match["name"]))
-    if text.endswith(".py"):
+    if text.endswith(".py") and Path(text).is_file():
         raise UsageError(f"controller={text}: name the class or function in it, such as {text}:Controller")
     if text.endswith(".fmu"):
         from roadproof.extensions.closed_loop.controllers.fmu import fmu_digest

@@ -85,12 +85,14 @@ class TargetProblem:
         situations = [self.shape.situation(values) for values in every]
         first = situations[0]
         tracks = {name: follow([x.courses[name] for x in situations], first, name) for name in first.others}
-        lists = {
-            name: [getattr(track, signal).T.tolist() for signal in SIGNALS] for name, track in tracks.items()
+        rows = {
+            name: np.stack([getattr(track, signal) for signal in SIGNALS], axis=-1).swapaxes(0, 1).tolist()
+            for name, track in tracks.items()
         }
-        mine: list[VehicleSamples] = []
-        for k, situation in enumerate(situations):
-            mine.append(loop.run(situation, {name: [rows[k] for rows in x] for name, x in lists.items()}))
+        mine = [
+            loop.run(situation, {name: x[k] for name, x in rows.items()})
+            for k, situation in enumerate(situations)
+        ]
         tracks[SUBJECT] = stacked(mine)
         margins = self.ruler.measure(tracks, first.courses)
         breaks = margins.get(BREAKS, np.full(len(every), -np.inf))

@@ -274,12 +274,16 @@ class _SearchState:
             outcome.decisions, outcome.reductions = last.decisions, last.simulations
 
     def judge_shown(self) -> None:
-        """Judge the exact drives of the simulations that show the target most clearly."""
-        for trial in self.showing:
-            situation = self.problem.shape.situation(trial.values)
-            judged = self.problem.judged(situation, self.loop, self.problem.shown, may_overlap=False)
+        """Judge the drives that show the target most clearly; a failing drive shows it, too."""
+        outcome = self.outcome
+        every = [(x.values, False) for x in self.showing]
+        if outcome.failing is not None:
+            every.append((outcome.failing_values, True))
+        for values, may_overlap in every:
+            situation = self.problem.shape.situation(values)
+            judged = self.problem.judged(situation, self.loop, self.problem.shown, may_overlap)
             if judged is not None:
-                self.outcome.shown, self.outcome.shown_values = judged, trial.values
+                outcome.shown, outcome.shown_values = judged, values
                 return
 
 

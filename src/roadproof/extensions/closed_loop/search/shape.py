@@ -83,7 +83,7 @@ class SituationShape:
                 yield Knob(f"{name}.a_lon", least, most, tenth)
                 yield Knob(f"{name}.begin", *_BEGINS, dt)
                 yield Knob(f"{name}.lasts", *_LASTS, dt)
-            if self._shift(name):
+            if self.shifts[name]:
                 yield Knob(f"{name}.change_begin", *_CHANGES, dt)
                 yield Knob(f"{name}.change_speed", *_ASIDE, Fraction(1, 20))
 
@@ -102,11 +102,15 @@ class SituationShape:
     def _is_ahead(self, name: str) -> bool:
         return self._motion(name).s > self._motion(self._reference(name)).s
 
-    def _shift(self, name: str) -> Fraction:
-        """Return how far a vehicle moves across the road in the pattern; 0 where it keeps its lane (m)."""
-        motion = self._motion(name)
-        shift = state_at(motion, self.pattern.horizon).d - motion.d
-        return Fraction(round(shift * 20), 20) if abs(shift) >= _SHIFT else Fraction(0)
+    @cached_property
+    def shifts(self) -> Mapping[str, Fraction]:
+        """The way of each vehicle across the road in the pattern; 0 where it keeps its lane (m)."""
+        ends = {
+            name: state_at(x, self.pattern.horizon).d - x.d for name, x in self.pattern.drive.vehicles.items()
+        }
+        return {
+            name: Fraction(round(x * 20), 20) if abs(x) >= _SHIFT else Fraction(0) for name, x in ends.items()
+        }
 
     def situation(self, values: Sequence[float]) -> TrafficSituation:
         """Return the situation of some values of the knobs, which are rounded to their grains."""
@@ -136,7 +140,7 @@ class SituationShape:
         )
 
     def _change(self, name: str, known: Mapping[str, Fraction]) -> tuple[Phase, ...]:
-        shift, limits, dt = self._shift(name), self.limits[name], self.clock.dt
+        shift, limits, dt = self.shifts[name], self.limits[name], self.clock.dt
         if not shift:
             return ()
         mean = known[f"{name}.change_speed"]
