@@ -10,6 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import roadproof as rp
@@ -19,6 +20,7 @@ from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import judge_file
 from roadproof.extensions.closed_loop.controllers.opening import source_of
 from roadproof.extensions.closed_loop.falsifying import Falsification, with_words
+from roadproof.extensions.closed_loop.search.margins import Ruler
 from roadproof.extensions.closed_loop.search.searching import Searching
 from roadproof.extensions.closed_loop.simulation import exact_drive
 from roadproof.frontends.cli.main import main
@@ -298,3 +300,49 @@ def test_a_page_plays_the_failing_drive_beside_those_of_the_driver_models(
 def test_build_servers_read_each_scenario(late: Falsification) -> None:
     assert late.to_junit().count("<failure") == 2
     assert "preventable by careful" in late.to_sarif()
+
+
+def test_classes_that_no_drive_shows_are_aimed_at(tmp_path: Path) -> None:
+    answer = falsify("Coasting", among="4,8", classes=True, simulations=64, out=tmp_path, drivers=[])
+    classes = {x.name: x for x in answer.targets if not x.is_scenario}
+    assert {*classes} == {"class_4", "class_8", "class_4_8"}
+    assert answer.view.classes_shown == sum(bool(x.shown_by) for x in classes.values()) >= 2
+    aimed_at = {name for name, x in classes.items() if x.simulations is not None}
+    by_others = {name for name, x in classes.items() if {*x.shown_by} - {f"shown-{name}"}}
+    assert aimed_at == {*classes} - by_others
+    assert main(["check", str(tmp_path)]) == 0
+
+
+def test_classes_are_left_out_where_rows_of_the_table_are_not_whole() -> None:
+    answer = falsify("Coasting", among="1,2,9", classes=True, simulations=1, drivers=[])
+    assert not answer.view.classes_asked
+    assert "note: classes are left out" in str(answer)
+
+
+def test_what_no_drive_can_show_is_proved_impossible(tmp_path: Path) -> None:
+    spec = tmp_path / "never.spec"
+    spec.write_text(
+        'def scenario_30(SV, POV: vehicle, L: lane) "safe and too near at once"\n'
+        "  := atLane(SV, L) and initSafe(SV, POV) and rssViolation(SV, POV)\n"
+    )
+    answer = falsify("Coasting", among=30, using=rp.load(specs=[spec]))
+    assert answer.findings == {"scenario_30": "IMPOSSIBLE"}
+    assert answer.exit_code is ExitCode.AS_EXPECTED
+    [target] = answer.targets
+    assert target.simulations is None
+
+
+def test_samples_that_lie_make_no_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A planted mistake: each simulation is measured as a failure. The judge alone decides."""
+    asked = problem(4)
+    true = Searching(asked, 32, 5).run(loop_of("Standing"))
+
+    def lie(self: Ruler, tracks: Any, courses: Any) -> dict[str, Any]:
+        count = next(iter(tracks.values())).s.shape[1]
+        return {"shows": np.ones(count), "breaks": np.ones(count)}
+
+    monkeypatch.setattr(Ruler, "measure", lie)
+    false = Searching(problem(4), 32, 5).run(loop_of("Standing"))
+    assert {kind for _, _, kind in false.points} <= {"fails", "preventable"}
+    assert true.failing is None
+    assert false.failing is None

@@ -90,7 +90,9 @@ def finding_text(x: TargetView) -> str:
         case "NOT SHOWN":
             if file is None or file.nearest is None:
                 return str(x.reason)
-            return f"in {file.count} simulations, the nearest misses it by {max(0.0, -file.nearest):.3g}"
+            if file.nearest > 0:
+                return f"in {file.count} simulations; some show it on samples, but the judge rejects them"
+            return f"in {file.count} simulations, the nearest misses it by {-file.nearest:.3g}"
         case "IMPOSSIBLE":
             return "proved: no drive shows it, whoever drives SV"
         case "ERROR":

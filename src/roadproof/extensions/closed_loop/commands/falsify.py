@@ -9,6 +9,8 @@ from roadproof.frontends.cli.basis import deliver, read_definitions, study_keywo
 SUMMARY = "search for the scenarios in which your controller fails"
 
 EXAMPLES = """\
+The search needs the package cmaes: pip install '.[closed-loop]' in a checkout.
+
 controllers:
   FILE.py:NAME   a class with step(observation, dt) and perhaps reset(observation), or a function
   FILE.fmu       a co-simulation FMU of FMI 2.0 or 3.0 (needs fmpy)
