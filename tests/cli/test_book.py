@@ -13,7 +13,7 @@ LONG = ("roadproof overlap --among 3,4,6,8",)
 """Questions of the README that ``make findings`` asks; shorter ones of these commands are in the book."""
 # The example of an extension is installed, and asked, by tests/core/test_example.py.
 EXAMPLES = sorted(x for x in ROOT.glob("examples/*/README.md") if x.parent.name != "extension")
-TUTORIALS = ("first-scenario", "catalogue", "recordings", "careful-driver")
+TUTORIALS = ("first-scenario", "catalogue", "recordings", "careful-driver", "closed-loop")
 GUIDES = (
     *("interop", "requirements", "signals", "rss", "roads", "solvers", "terminal", "recordings"),
     *("certificates", "c", "assurance", "maps", "surveys", "typical"),

@@ -61,6 +61,7 @@ NOT_HEADED = {
         "refutation.json",
         "judged.json",
         "boundary.json",
+        "simulations.json",
         "common.json",
     ),
     "trace-lock.json",
@@ -297,6 +298,15 @@ def of_preventable(run: Run, out: Path, traffic: Path) -> None:
     assert {x["verdict"] for x in (*told["plates"], *told["lemmas"])} == {"WITNESSED", "PROVED"}
     examine(told, folder=out)
     examine(run("preventable", *asked, "--no-lemmas"))
+
+
+def of_falsify(run: Run, out: Path, traffic: Path) -> None:
+    vehicles = Path(__file__).parents[1] / "extensions" / "closed_loop" / "vehicles.py"
+    asked = ("--among", 4, "--drivers", "careful", "--simulations", 100, "--jobs", 1, "--no-classes")
+    told = run("falsify", f"{vehicles}:LateBrake", *asked, "--no-pictures", "--out", out)
+    assert [x["finding"] for x in told["targets"]] == ["FAILS"]
+    examine(told, folder=out)
+    examine(run("falsify", f"{vehicles}:LateBrake", *asked))
 
 
 def of_overlap(run: Run, out: Path, traffic: Path) -> None:

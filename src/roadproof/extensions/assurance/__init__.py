@@ -26,7 +26,7 @@ EXTENSION = Extension(
     schemas=("schemas:TITLES",),
     checked_files={".toml": "checking:check_case"},
     options=dict.fromkeys(
-        ("prove", "check", "witness", "evaluate", "coverage", "catalogue", "preventable"),
+        ("prove", "check", "witness", "evaluate", "coverage", "catalogue", "preventable", "falsify"),
         "options:BuildResultOptions",
     ),
     sections={"trace": "page:TRACE"},

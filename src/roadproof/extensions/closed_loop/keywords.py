@@ -1,0 +1,28 @@
+"""Keyword arguments of each question; ``make generated`` writes this file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from roadproof.frontends.settings.keywords import BudgetKeywords, ModelsKeywords, RunKeywords, SharingKeywords
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from roadproof.extensions.closed_loop.search.searching import Method, Wanted
+    from roadproof.frontends.api.definitions import Among
+    from roadproof.library.bind import Number
+
+
+class FalsifyKeywords(ModelsKeywords, BudgetKeywords, SharingKeywords, RunKeywords, total=False):
+    among: Among
+    require: Iterable[str]
+    drivers: Iterable[str] | None
+    failures: Wanted
+    classes: bool
+    simulations: int
+    seed: int
+    method: Method
+    step: Number
+    seconds: Number
+    patience: float

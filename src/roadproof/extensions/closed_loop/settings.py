@@ -1,0 +1,102 @@
+"""The options of ``falsify``."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadproof.extensions.catalogue.settings import driver_models_or_none
+from roadproof.frontends.settings import groups
+from roadproof.frontends.settings.option import extensible, option, output, search
+from roadproof.frontends.settings.readers import decimal, seconds, whole
+from roadproof.runtime.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from roadproof.extensions.closed_loop.search.searching import Method, Wanted
+    from roadproof.frontends.api.definitions import Among
+    from roadproof.library.bind import Number
+
+COLLISION = "G not collision(SV, POV)"
+
+
+@extensible("falsify")
+@dataclass(frozen=True, kw_only=True)
+class Falsify(groups.DefinitionsSettings, groups.Models, groups.BudgetSettings, groups.Sharing, groups.Run):
+    """Options of ``falsify``."""
+
+    among: Among = groups.scenarios_such_as("1-8", keyword=True)
+    require: Iterable[str] = option(
+        (COLLISION,),
+        "--require 'G FORMULA'",
+        f"requirement on SV; may be repeated (default: {COLLISION})",
+        gather=tuple,
+    )
+    drivers: Iterable[str] | None = option(
+        None,
+        "--drivers MODELS",
+        "driver models put in the place of SV in a failing drive: careful,r157, or none (default: all)",
+        read=driver_models_or_none,
+    )
+    failures: Wanted = option(
+        "any",
+        "--failures KIND",
+        "failures that count: any (default), or preventable ones, which a driver model prevents",
+        choices=("any", "preventable"),
+    )
+    classes: bool = option(True, "--no-classes", "aim at scenarios only, not at classes of them", rare=True)
+    simulations: int = search(
+        2000,
+        "--simulations N",
+        "simulations for each scenario and class (default: 2000)",
+        read=whole(1),
+        least=1,
+    )
+    seed: int = search(0, "--seed N", "seed of the search (default: 0)", read=whole(0), least=0)
+    method: Method = search(
+        "cma",
+        "--method",
+        "cma (default: CMA-ES on robustness), or random",
+        choices=("cma", "random"),
+        rare=True,
+    )
+    step: Number = search(
+        Fraction(1, 10),
+        "--step S",
+        "seconds between questions to the controller (default: 0.1)",
+        read=seconds,
+        rare=True,
+    )
+    seconds: Number = search(
+        Fraction(10), "--seconds S", "length of a simulation (default: 10)", read=seconds, rare=True
+    )
+    patience: float = search(
+        10.0,
+        "--patience S",
+        "seconds that the controller may take for a simulation or a reply (default: 10)",
+        read=decimal,
+        rare=True,
+    )
+    effort: float = option(
+        60.0,
+        "--effort N",
+        "about N solver seconds for a drive or a proof that a target is possible (default: 60)",
+        group="effort",
+        read=decimal,
+        rare=True,
+    )
+    out: str | Path | None = groups.folder_for("failing drives, pictures, evidence")
+    tests: Path | None = output(
+        None, "--tests DIR", "write failing drives as tests, with a catalogue.toml", read=Path, keyword=False
+    )
+    formats: Sequence[str] | None = output(
+        None,
+        "--format FORMAT",
+        "with --tests: also write openscenario, commonroad, highd, csv or opendrive",
+        gather=list,
+        keyword=False,
+        rare=True,
+    )
+    pictures: bool = groups.pictures_of(command_line_only=True)

@@ -1,0 +1,86 @@
+"""Controllers in other processes and files: JSON lines, and FMUs where fmpy and pythonfmu are installed."""
+
+import sys
+from pathlib import Path
+from shlex import quote
+
+import pytest
+
+import roadproof as rp
+from extensions.closed_loop.loops import loop_of, problem
+from roadproof.extensions.closed_loop.controllers.opening import opened, source_of
+from roadproof.extensions.closed_loop.errors import ControllerError
+from roadproof.extensions.closed_loop.simulation import ControlLoop, exact_drive
+
+ECHO = Path(__file__).with_name("echo.py")
+
+
+def command(how: str) -> str:
+    return f"{quote(sys.executable)} {quote(str(ECHO))} {how}"
+
+
+def test_a_command_drives_as_the_same_controller_in_python() -> None:
+    asked = problem(4)
+    situation = asked.shape.situation(asked.shape.seed)
+    expected = exact_drive(loop_of("LateBrake"), situation)
+    with opened(source_of(command("brakes")), 0, 20.0) as controller:
+        assert exact_drive(ControlLoop(controller, 60.0), situation) == expected
+
+
+@pytest.mark.parametrize(
+    ("how", "told"),
+    [
+        ("late", "no reply within 0.5 s"),
+        ("dies", "its process ended with code 3: out of fuel"),
+        ("words", "its reply is no JSON: b'brake!'"),
+        ("empty", 'has no number "acceleration"'),
+    ],
+)
+def test_an_error_says_what_the_process_did(how: str, told: str) -> None:
+    asked = problem(4)
+    with (
+        opened(source_of(command(how)), 0, 0.5 if how == "late" else 20.0) as controller,
+        pytest.raises(ControllerError) as error,
+    ):
+        asked.run(ControlLoop(controller, 60.0), [asked.shape.seed])
+    assert told in str(error.value)
+
+
+def test_a_command_is_falsified() -> None:
+    answer = rp.falsify(
+        command("brakes"), among=4, classes=False, drivers=["careful"], simulations=60, jobs=1
+    )
+    assert answer.findings == {"scenario_4": "FAILS"}
+
+
+def test_an_fmu_drives_as_the_same_controller_in_python(tmp_path: Path) -> None:
+    pytest.importorskip("fmpy", reason="fmpy is not installed: FMUs are not tried")
+    builder = pytest.importorskip(
+        "pythonfmu.builder", reason="pythonfmu is not installed: FMUs are not tried"
+    )
+    script = tmp_path / "latebrake.py"
+    script.write_text(SLAVE)
+    builder.FmuBuilder.build_FMU(script, dest=tmp_path)
+    asked = problem(4)
+    situation = asked.shape.situation(asked.shape.seed)
+    expected = exact_drive(loop_of("LateBrake"), situation)
+    with opened(source_of(str(tmp_path / "LateBrake.fmu")), 0, 20.0) as controller:
+        assert exact_drive(ControlLoop(controller, 60.0), situation) == expected
+
+
+SLAVE = """
+from pythonfmu import Fmi2Causality, Fmi2Slave, Real
+
+
+class LateBrake(Fmi2Slave):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.gap = 1e6
+        self.acceleration = 0.0
+        self.register_variable(Real("gap", causality=Fmi2Causality.input))
+        self.register_variable(Real("acceleration", causality=Fmi2Causality.output))
+
+    def do_step(self, current_time, step_size):
+        self.acceleration = -9.0 if self.gap < 8 else 0.0
+        return True
+"""
