@@ -61,7 +61,7 @@ class Preventable(groups.DefinitionsSettings, groups.BudgetSettings, groups.Shar
     )
     lines: int = option(100, "--lines K", "lines of a plate (default: 100)", read=whole(2))
     tests: str | Path | None = option(
-        None, "--tests FILE", "draw tests as points: a CSV table, such as drivers.csv of catalogue"
+        None, "--tests FILE", "draw tests as points: a CSV table, such as drivers.csv of catalogue", rare=True
     )
     lemmas: bool = option(True, "--no-lemmas", "prove no lemmas", rare=True)
     kernel: Kernel | None = option(
