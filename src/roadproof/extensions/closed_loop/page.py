@@ -1,6 +1,7 @@
 """The section about a vehicle under test on a report page."""
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,16 +11,18 @@ from roadproof.extensions.closed_loop.data import FalsifyData, TargetResult
 from roadproof.extensions.closed_loop.simulations_file import PointKind, SimulationsFile
 from roadproof.extensions.pages.page.page_context import DriveCard, PageContext
 from roadproof.extensions.pages.page.results import PageResult, Words
-from roadproof.extensions.pages.page.section_kind import SectionKind, Values
+from roadproof.extensions.pages.page.section_kind import OpenPoint, SectionKind, Values
 
-_WIDE, _HIGH, _MOST = 420.0, 220.0, 3000
+_LEFT, _WIDE, _HIGH, _INSET, _MOST = 48, 242, 160, 6, 3000
+"""The frame of a plane (px), how far its points are from it, and how many are drawn at most."""
 _HERE = Path()
-_COLOURS: Mapping[PointKind, str] = {
-    "other": "var(--faint)",
-    "shown": "var(--one)",
-    "fails": "var(--two)",
-    "preventable": "var(--four)",
+_STYLES: Mapping[PointKind, tuple[str, str]] = {
+    "other": ("var(--faint)", "another drive"),
+    "shown": ("var(--one)", "the scenario, no failure"),
+    "fails": ("var(--two)", "failure that no driver model prevents"),
+    "preventable": ("var(--four)", "failure that a driver model prevents, on samples"),
 }
+"""The colour of a simulation by its kind, and its words in the legend."""
 
 
 class PlaneDot(NamedTuple):
@@ -30,10 +33,18 @@ class PlaneDot(NamedTuple):
     colour: str
 
 
+class PlaneKey(NamedTuple):
+    """A line of the legend of a plane."""
+
+    colour: str
+    words: str
+    number: int
+
+
 class TargetCards(NamedTuple):
     """A failing target on the page: its drives as cards, those of driver models beside, and its plane.
 
-    ``gaps``, ``faster``: the ranges of the plane (m, m/s).
+    ``gaps``, ``faster``: the ranges of the plane (m, m/s). ``keys``: its legend.
     """
 
     target: TargetResult
@@ -41,6 +52,7 @@ class TargetCards(NamedTuple):
     dots: tuple[PlaneDot, ...]
     gaps: tuple[float, float]
     faster: tuple[float, float]
+    keys: tuple[PlaneKey, ...]
 
 
 def _falsified(result: PageResult, context: PageContext, words: Words) -> Values:
@@ -58,21 +70,29 @@ def _cards(x: TargetResult, result: PageResult, context: PageContext) -> TargetC
     gaps, faster = _range([p.gap for p in points]), _range([p.faster for p in points])
     dots = (
         PlaneDot(
-            round(_WIDE * (p.gap - gaps[0]) / (gaps[1] - gaps[0]), 1),
-            round(_HIGH * (faster[1] - p.faster) / (faster[1] - faster[0]), 1),
-            _COLOURS[p.kind],
+            round(_LEFT + _INSET + (_WIDE - 2 * _INSET) * (p.gap - gaps[0]) / (gaps[1] - gaps[0]), 1),
+            round(_INSET + (_HIGH - 2 * _INSET) * (faster[1] - p.faster) / (faster[1] - faster[0]), 1),
+            _STYLES[p.kind][0],
         )
         for p in points
     )
-    return TargetCards(x, cards, tuple(dots), gaps, faster)
+    counts = Counter(p.kind for p in points)
+    keys = tuple(PlaneKey(*style, counts[kind]) for kind, style in _STYLES.items() if counts[kind])
+    return TargetCards(x, cards, tuple(dots), gaps, faster, keys)
 
 
 def _card(driver: str, drive: object, x: TargetResult, result: PageResult, context: PageContext) -> DriveCard:
     place = "-".join(filter(None, ("fails", str(result.id), x.name, driver)))
     shown = drive if isinstance(drive, Mapping) else (result.folder or _HERE) / str(drive)
-    sides = {y.driver: y.side for y in x.drivers}
-    words = f"{driver} in the place of SV: {sides.get(driver, '')}" if driver else "the vehicle under test"
-    return DriveCard(context.drive(shown), "WITNESSED" if driver else "REFUTED", words, place)
+    if not driver:
+        return DriveCard(context.drive(shown), "FAILS", x.name, place, title="your vehicle fails")
+    verdict = next(y for y in x.drivers if y.driver == driver)
+    if verdict.gap is not None:
+        margin = f", {verdict.gap:g} m left"
+    else:
+        margin = "" if verdict.instant is None else f", touches at {verdict.instant:g} s"
+    title = f"{driver} drives instead: {verdict.side}{margin}"
+    return DriveCard(context.drive(shown), "WITNESSED", x.name, place, title=title)
 
 
 def _simulations(x: TargetResult, result: PageResult) -> SimulationsFile | None:
@@ -92,4 +112,20 @@ def _range(values: list[float]) -> tuple[float, float]:
     return (low, high) if low < high else (low, low + 1)
 
 
-FALSIFY = SectionKind("Vehicle under test", "In which scenarios does it fail?", "falsify", _falsified)
+def _points(result: PageResult) -> Iterator[OpenPoint]:
+    """Yield the targets that the vehicle fails, or that are not decided."""
+    for x in read(FalsifyData, result.data, result.name).targets:
+        if x.finding in ("FAILS", "NOT SHOWN", "ERROR"):
+            reason = f": {x.reason}" if x.reason else ""
+            yield OpenPoint(x.finding, f"{x.name}, {x.title}{reason}", f"result-{result.id}")
+
+
+def _counts(result: PageResult) -> str:
+    """Return how many targets have each finding."""
+    counts = Counter(x.finding for x in read(FalsifyData, result.data, result.name).targets)
+    return ", ".join(f"{n} {finding}" for finding, n in counts.items())
+
+
+FALSIFY = SectionKind(
+    "Vehicle under test", "In which scenarios does it fail?", "falsify", _falsified, _points, _counts
+)

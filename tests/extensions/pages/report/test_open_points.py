@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from extensions.pages.report.test_page import HEADED, body_of, catalogue_of, concrete, made
 from extensions.pages.report.test_summary import written
-from roadproof.extensions.pages.page.open_points import open_points
+from roadproof.extensions.pages.page.open_points import catalogue_points, parts_left_out
 from roadproof.extensions.pages.page.results import PageResult
 from roadproof.extensions.pages.page.summary import overview
 
@@ -67,7 +67,7 @@ def expected(data: dict) -> list[tuple[str, str]]:
 @given(catalogues())
 def test_each_open_point_is_listed_once(data):
     result = PageResult("x", data["schema"], data)
-    points = [*open_points(result)]
+    points = [*catalogue_points(result), *parts_left_out(result)]
     left = list(points)
     for word, text in expected(data):
         found = next((x for x in left if x[0] == word and text in x[1]), None)
@@ -76,7 +76,7 @@ def test_each_open_point_is_listed_once(data):
     assert left == []
     ids = {f"test-0-{k}" for k in range(len(IDS))} | {"result-0"}
     assert {target for _, _, target in points} <= ids
-    assert overview(result, "", "").rank == (1 if points else 2)
+    assert overview(result, "", "", 0, catalogue_points(result)).rank == (1 if points else 2)
 
 
 def test_the_page_lists_open_points_and_counts_them(tmp_path):

@@ -1,30 +1,32 @@
 """The open points of results: untested situations, faulty and doubtful tests, and what a reader left out."""
 
 from collections.abc import Iterator
-from typing import Final, TypeAlias
+from typing import Final
 
 from roadproof.evidence.codec import read
 from roadproof.evidence.strict import Json
 from roadproof.extensions.catalogue.catalogue_data import CatalogueData, Remarks
 from roadproof.extensions.pages.page.results import PageResult
+from roadproof.extensions.pages.page.section_kind import OpenPoint
 
-Point: TypeAlias = tuple[str, str, str]
-"""A word, a text, and the id of the part of the page that says more."""
 NOT_TESTED: Final = "not tested"
 LEFT_OUT: Final = "left out"
 UNDECIDED: Final = "undecided"
 
 
-def open_points(result: PageResult) -> Iterator[Point]:
-    """Yield the open points of a result, beside those of its verdicts."""
-    target = f"result-{result.id}"
-    if result.kind == "catalogue":
-        yield from _of_catalogue(read(CatalogueData, result.data, result.name), result.id)
+def parts_left_out(result: PageResult) -> Iterator[OpenPoint]:
+    """Yield the parts of files that a reader left out of a result."""
     for text in _texts(result.data.get("left_out")):
-        yield LEFT_OUT, text, target
+        yield OpenPoint(LEFT_OUT, text, f"result-{result.id}")
 
 
-def _of_catalogue(data: CatalogueData, number: int) -> Iterator[Point]:
+def catalogue_points(result: PageResult) -> Iterator[OpenPoint]:
+    """Yield the open points of a catalogue: what is not tested, at fault, in doubt or undecided."""
+    points = _of_catalogue(read(CatalogueData, result.data, result.name), result.id)
+    yield from (OpenPoint(*x) for x in points)
+
+
+def _of_catalogue(data: CatalogueData, number: int) -> Iterator[tuple[str, str, str]]:
     places = {x.id: f"test-{number}-{k}" for k, x in enumerate(data.tests)}
     whole = f"result-{number}"
     words = {x.name: x.words for x in (*data.targets, *data.gaps.targets)}

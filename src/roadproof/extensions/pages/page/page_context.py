@@ -58,7 +58,7 @@ class PageDrive:
 class DriveCard:
     """A drive in a gallery: the claim that it shows, the verdict, and notes on its check.
 
-    ``place``: its id on the page.
+    ``place``: its id on the page. ``title``: over the picture, that of the drive where it is empty.
     """
 
     drive: PageDrive
@@ -66,6 +66,7 @@ class DriveCard:
     claim: str
     place: str
     notes: str = ""
+    title: str = ""
 
 
 @dataclass

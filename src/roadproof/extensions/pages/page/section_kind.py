@@ -1,6 +1,6 @@
 """The presentation of a kind of result on a page."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple, TypeAlias
 
 from roadproof.extensions.pages.page.page_context import PageContext
@@ -9,12 +9,34 @@ from roadproof.extensions.pages.page.results import PageResult, Words
 Values: TypeAlias = Mapping[str, object]
 
 
+class OpenPoint(NamedTuple):
+    """What a result leaves open: a word, a text, and the id of the part of the page that says more."""
+
+    word: str
+    text: str
+    target: str
+
+
+def no_points(result: PageResult) -> Iterable[OpenPoint]:
+    """Return no open points, beside those of the verdicts."""
+    return ()
+
+
+def no_counts(result: PageResult) -> str:
+    """Return no counts; those of the verdicts are shown."""
+    return ""
+
+
 class SectionKind(NamedTuple):
     """A title, a question, a template of ``page/templates`` (``plain`` fits any answer), and a function for
     its values.
+
+    ``points``, ``counts``: functions for open points and counts in the summary, beside those of verdicts.
     """
 
     title: str
     question: str
     template: str
     values: Callable[[PageResult, PageContext, Words], Values]
+    points: Callable[[PageResult], Iterable[OpenPoint]] = no_points
+    counts: Callable[[PageResult], str] = no_counts

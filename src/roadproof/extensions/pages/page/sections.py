@@ -48,7 +48,8 @@ def section(result: PageResult, context: PageContext, words: Words) -> PageSecti
             f"{result.schema} ({reason}); make it again"
         ) from None
     wrong = len(rejected) + context.rejected_in(result.folder)
-    return PageSection(overview(result, kind.title, kind.question, wrong), html)
+    head = overview(result, kind.title, kind.question, wrong, kind.points(result), kind.counts(result))
+    return PageSection(head, html)
 
 
 def _kind_of(result: PageResult) -> SectionKind:

@@ -6,6 +6,7 @@ from typing import Any
 
 from roadproof.evidence.codec import read
 from roadproof.extensions.pages.page import catalogues, claims, values
+from roadproof.extensions.pages.page.open_points import catalogue_points
 from roadproof.extensions.pages.page.page_context import PageContext
 from roadproof.extensions.pages.page.plates import plate_values
 from roadproof.extensions.pages.page.results import PageResult, Words
@@ -58,7 +59,11 @@ REDUNDANCY = SectionKind("Redundant parts", "Which parts change nothing?", "redu
 EXPLORE = SectionKind("Extremes", "How far can a drive of the formula go?", "explore", values.explored)
 MONITOR = SectionKind("One trace", "Where does the formula hold on it?", "monitor", values.monitored)
 CATALOGUE = SectionKind(
-    "Catalogue of tests", "Which scenarios do they cover?", "catalogue", catalogues.catalogue
+    "Catalogue of tests",
+    "Which scenarios do they cover?",
+    "catalogue",
+    catalogues.catalogue,
+    catalogue_points,
 )
 PREVENTABLE = SectionKind(
     "Preventable collisions", "From which states does a driver prevent one?", "preventable", plate_values

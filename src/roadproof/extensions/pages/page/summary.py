@@ -10,8 +10,9 @@ from roadproof.evidence.codec import read
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding, summary
 from roadproof.evidence.strict import Json
 from roadproof.extensions.catalogue.catalogue_data import Figure
-from roadproof.extensions.pages.page.open_points import open_points
+from roadproof.extensions.pages.page.open_points import parts_left_out
 from roadproof.extensions.pages.page.results import PageResult
+from roadproof.extensions.pages.page.section_kind import OpenPoint
 from roadproof.extensions.pages.page.templates import render
 from roadproof.frontends.report.sheet import excerpt
 from roadproof.library.words import spans
@@ -84,8 +85,15 @@ class Overview:
         return 1 if surprising or self.points or is_open else 2
 
 
-def overview(result: PageResult, title: str, question: str, rejected: int = 0) -> Overview:
-    """Return the row of a result in the summary."""
+def overview(
+    result: PageResult,
+    title: str,
+    question: str,
+    rejected: int = 0,
+    more: Iterable[OpenPoint] = (),
+    counts: str = "",
+) -> Overview:
+    """Return the row of a result in the summary; ``more``, ``counts``: as its section kind says."""
     entries = [*_statements(result)]
     target = f"result-{result.id}"
     statements = [
@@ -93,9 +101,10 @@ def overview(result: PageResult, title: str, question: str, rejected: int = 0) -
         for x, at in entries
     ]
     subject = _subject(result, [x for x, _ in entries])
-    points = [SummaryStatement(word, excerpt(text, 240), at) for word, text, at in open_points(result)]
-    counts = _counts_of(result)
-    return Overview(title, question, target, result.name, subject, counts, statements, rejected, points)
+    every = (*more, *parts_left_out(result))
+    points = [SummaryStatement(x.word, excerpt(x.text, 240), x.target) for x in every]
+    shown = counts or _counts_of(result)
+    return Overview(title, question, target, result.name, subject, shown, statements, rejected, points)
 
 
 def _statements(result: PageResult) -> Iterator[tuple[Mapping[str, Json], str]]:

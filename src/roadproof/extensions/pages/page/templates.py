@@ -44,6 +44,7 @@ SIGNS: Mapping[str, Sign] = {
     "COVERED": Sign("✓", "proof"),
     "GAPS": Sign("■", "drive"),
     "UNKNOWN": _UNKNOWN,
+    "FAILS": Sign("✗", "against"),
     "true": Sign("✓", "proof"),
     "false": Sign("✗", "against"),
     "proved": Sign("✓", "proof"),
