@@ -290,6 +290,13 @@ def test_a_page_plays_the_failing_drive_beside_those_of_the_driver_models(
     assert late.folder is not None
     rp.page(late.folder, out=tmp_path / "page.html")
     text = (tmp_path / "page.html").read_text("utf-8")
+    summary = text.partition('id="result-0"')[0]
+    failing = [x.name for x in late.view.failures]
+    assert failing
+    assert f"{len(failing)} FAILS" in summary
+    assert all(f"{name}, " in summary for name in failing)
+    assert "your vehicle fails" in text
+    assert "gap at the start (m)" in text
     for x in ("scenario_1", "scenario_4"):
         assert f'id="fails-0-{x}"' in text
         assert f'id="fails-0-{x}-careful"' in text
