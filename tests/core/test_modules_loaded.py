@@ -14,7 +14,7 @@ import pytest
 
 MOST_MODULES: Mapping[str, int] = {
     "--help": 21,
-    "witness 1": 132,
+    "witness 1": 138,
     "overlap --among 4,5,8": 151,
     "prove P4": 156,
     "simulate --seconds 10 --jobs 1 --quiet --out OUT": 60,

@@ -4,13 +4,14 @@ A search with the objective ``typical`` prefers drives that fulfil them. Each wi
 of the formula and from the road. The exact judge decides which of them a drive fulfils.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import cache
 from math import ceil
-from typing import Final, assert_never
+from typing import TYPE_CHECKING, Final, TypeAlias, assert_never
 
-from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.search.usual_road import zones_of
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.bind import bind, values_with, without_empty_windows
@@ -21,7 +22,10 @@ from roadproof.logic.formula import Compare, Formula, Interval
 from roadproof.logic.rewrite import bounds_of, with_values, without_names
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.judging import judge
-from roadproof.world.road import Attribute, Lanelet, Road
+
+if TYPE_CHECKING:
+    from roadproof.engines.encode.unroll import Grid
+    from roadproof.world.road import Attribute, Lanelet, Road
 
 NEAR: Final = Fraction(1, 2)
 """How far from the centre of a lane its middle reaches (m)."""
@@ -30,7 +34,7 @@ AWAY: Final = Fraction(10)
 LEAST: Final = Fraction(1)
 """How long each state lasts at least that the formula requires for a time (s)."""
 
-Extent = tuple[Fraction | None, Fraction | None]
+Extent: TypeAlias = tuple[Fraction | None, Fraction | None]
 
 
 @dataclass(frozen=True)
