@@ -116,6 +116,7 @@ OWN = {
     *(
         "extensions/pages/studio/pages.py",
         "extensions/pages/studio/examples.py",
+        "extensions/pages/studio/gallery.py",
         "extensions/traffic/evaluate/results.py",
     ),
 }
