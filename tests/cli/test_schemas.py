@@ -91,7 +91,7 @@ MAPS = {
     *("together", "notes", "failed", "elsewhere", "situations", "begins", "covered", "start"),
     "open",
     *("fixed", "at"),
-    *("not_checked", "sets", "parts", "counts", "wishes"),
+    *("not_checked", "sets", "parts", "counts", "wishes", "driven"),
 }
 Place = tuple[str | int, ...]
 Run = Callable[..., Any]

@@ -143,7 +143,7 @@ def _inline(kind: object, described: JsonObject) -> JsonObject:
             case EvidenceSchema(schema):
                 described = {"$ref": schema, **described}
             case FileOrEvidence(schemas):
-                file: Json = {"$ref": "#/$defs/file"}
+                file: Json = {"$ref": f"{COMMON}#/$defs/file"}
                 each: list[Json] = [{"$ref": x} for x in schemas]
                 described = {"anyOf": [{"type": "null"}, file, *each], **described}
     return described
