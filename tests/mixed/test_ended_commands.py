@@ -27,6 +27,7 @@ ARGUMENTS = {
     "preventable": ["cut-in"],
     "evaluate": ["."],
     "trace": ["r.toml"],
+    "falsify": ["x.py:X"],
 }
 
 

@@ -27,9 +27,12 @@ from extensions.catalogue.test_catalogue_verdicts import (
     fact,
     looked_at,
 )
+from extensions.pages.report.test_page import HEADED, catalogue_of
+from extensions.pages.report.test_page import concrete as concrete_data
 from roadproof.errors import InputError
 from roadproof.evidence.finding import Finding
 from roadproof.extensions.catalogue.target_formulas import NO_CLASS, TargetFormulas
+from roadproof.extensions.pages.page.open_points import catalogue_points
 from roadproof.extensions.pages.page.results import PageResult
 from roadproof.extensions.pages.page.summary import Overview, overview
 from roadproof.reasons import Reason, ReasonKind
@@ -127,14 +130,14 @@ def test_a_catalogue(seed: int, asked: TargetFormulas) -> None:
 
 
 ANSWERS = {
-    "catalogue": {
-        "tests": [{"id": "a"}],
-        "figures": [{"set_name": "base", "kind": "scenarios", "sector": "", "tested": 3, "total": 4}],
-        "faults": [{"tests": ["a"], "told": "shows no scenario"}],
-        "doubts": [],
-        "contradictions": [],
-        "notes": ["odd"],
-    },
+    "catalogue": {"schema": "roadproof/catalogue/1", **HEADED}
+    | catalogue_of(
+        tests=[concrete_data(id="a", file="a.json", shown=[])],
+        figures=[{"set_name": "base", "kind": "scenarios", "sector": "", "tested": 3, "total": 4}],
+        faults=[{"tests": ["a"], "told": "shows no scenario"}],
+        not_tested=["scenario_1"],
+        notes=["odd"],
+    ),
     "overlap": {
         "verdicts": [
             {"a": 1, "b": 2, "verdict": "IMPOSSIBLE", "reason": ""},
@@ -158,9 +161,11 @@ ANSWERS = {
 
 
 def summary(kind: str, data: dict[str, Any]) -> tuple[object, ...]:
-    found: Overview = overview(PageResult(f"{kind}.json", kind, data), kind, "asked")
+    result = PageResult(f"{kind}.json", kind, data)
+    points = catalogue_points(result) if kind == "catalogue" else ()
+    found: Overview = overview(result, kind, "asked", 0, points)
     expected = [x.expected for x in found.statements]
-    return found.verdicts, found.rank, found.rejected, found.remarked, expected
+    return found.verdicts, found.rank, found.rejected, [x.verdict for x in found.points], expected
 
 
 @pytest.mark.parametrize("kind", ANSWERS)

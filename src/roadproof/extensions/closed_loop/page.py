@@ -11,7 +11,7 @@ from roadproof.extensions.closed_loop.data import FalsifyData, TargetResult
 from roadproof.extensions.closed_loop.simulations_file import PointKind, SimulationsFile
 from roadproof.extensions.pages.page.page_context import DriveCard, PageContext
 from roadproof.extensions.pages.page.results import PageResult, Words
-from roadproof.extensions.pages.page.section_kind import OpenPoint, SectionKind, Values
+from roadproof.extensions.pages.page.section_kind import OpenItem, SectionKind, Values
 
 _LEFT, _WIDE, _HIGH, _INSET, _MOST = 48, 242, 160, 6, 3000
 """The frame of a plane (px), how far its points are from it, and how many are drawn at most."""
@@ -112,12 +112,12 @@ def _range(values: list[float]) -> tuple[float, float]:
     return (low, high) if low < high else (low, low + 1)
 
 
-def _points(result: PageResult) -> Iterator[OpenPoint]:
+def _points(result: PageResult) -> Iterator[OpenItem]:
     """Yield the targets that the vehicle fails, or that are not decided."""
     for x in read(FalsifyData, result.data, result.name).targets:
         if x.finding in ("FAILS", "NOT SHOWN", "ERROR"):
             reason = f": {x.reason}" if x.reason else ""
-            yield OpenPoint(x.finding, f"{x.name}, {x.title}{reason}", f"result-{result.id}")
+            yield OpenItem(x.finding, f"{x.name}, {x.title}{reason}", f"result-{result.id}")
 
 
 def _counts(result: PageResult) -> str:

@@ -124,8 +124,8 @@ class Settings:
                 known[name].check(name, value)
                 if kinds[name] and not any(kind.fits(value) for kind in kinds[name]):
                     shown = repr(value)[:60]
-                    told = " or ".join(kind.told.format(name=name, value=shown) for kind in kinds[name])
-                    raise UsageError(f"{name}={shown}: write {told}")
+                    advice = " or ".join(kind.told.format(name=name, value=shown) for kind in kinds[name])
+                    raise UsageError(f"{name}={shown}: write {advice}")
         return cls(**given)
 
 
@@ -178,7 +178,7 @@ def _check_new(added: type[Settings], former: type[Settings], entry: str, comman
 
 
 class _Kind(NamedTuple):
-    """Whether a value is of a kind, and how to write one."""
+    """A kind of values: a test of a value, and how to write one."""
 
     fits: Callable[[object], bool]
     told: str

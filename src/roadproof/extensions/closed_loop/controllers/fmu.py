@@ -34,7 +34,7 @@ class FmuController:
         try:
             import fmpy
         except ImportError:
-            raise MissingSolverError("an FMU needs fmpy: pip install 'roadproof[fmu]'") from None
+            raise MissingSolverError("an FMU needs fmpy: pip install fmpy") from None
         try:
             self._about: Any = fmpy.read_model_description(str(path))
             self._folder = fmpy.extract(str(path))

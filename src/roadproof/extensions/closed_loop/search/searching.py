@@ -303,6 +303,6 @@ def _cma() -> Any:
         from cmaes import CMA
     except ImportError:
         raise MissingSolverError(
-            "the search needs cmaes: pip install 'roadproof[closed-loop]', or choose --method random"
+            "the search needs cmaes: pip install cmaes, or choose --method random"
         ) from None
     return CMA

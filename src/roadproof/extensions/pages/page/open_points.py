@@ -7,23 +7,23 @@ from roadproof.evidence.codec import read
 from roadproof.evidence.strict import Json
 from roadproof.extensions.catalogue.catalogue_data import CatalogueData, Remarks
 from roadproof.extensions.pages.page.results import PageResult
-from roadproof.extensions.pages.page.section_kind import OpenPoint
+from roadproof.extensions.pages.page.section_kind import OpenItem
 
 NOT_TESTED: Final = "not tested"
 LEFT_OUT: Final = "left out"
 UNDECIDED: Final = "undecided"
 
 
-def parts_left_out(result: PageResult) -> Iterator[OpenPoint]:
+def parts_left_out(result: PageResult) -> Iterator[OpenItem]:
     """Yield the parts of files that a reader left out of a result."""
     for text in _texts(result.data.get("left_out")):
-        yield OpenPoint(LEFT_OUT, text, f"result-{result.id}")
+        yield OpenItem(LEFT_OUT, text, f"result-{result.id}")
 
 
-def catalogue_points(result: PageResult) -> Iterator[OpenPoint]:
+def catalogue_points(result: PageResult) -> Iterator[OpenItem]:
     """Yield the open points of a catalogue: what is not tested, at fault, in doubt or undecided."""
     points = _of_catalogue(read(CatalogueData, result.data, result.name), result.id)
-    yield from (OpenPoint(*x) for x in points)
+    yield from (OpenItem(*x) for x in points)
 
 
 def _of_catalogue(data: CatalogueData, number: int) -> Iterator[tuple[str, str, str]]:

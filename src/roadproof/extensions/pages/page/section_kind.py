@@ -9,15 +9,15 @@ from roadproof.extensions.pages.page.results import PageResult, Words
 Values: TypeAlias = Mapping[str, object]
 
 
-class OpenPoint(NamedTuple):
-    """What a result leaves open: a word, a text, and the id of the part of the page that says more."""
+class OpenItem(NamedTuple):
+    """A point that a result leaves open: a word, a text, and the id of the part of the page about it."""
 
     word: str
     text: str
     target: str
 
 
-def no_points(result: PageResult) -> Iterable[OpenPoint]:
+def no_points(result: PageResult) -> Iterable[OpenItem]:
     """Return no open points, beside those of the verdicts."""
     return ()
 
@@ -38,5 +38,5 @@ class SectionKind(NamedTuple):
     question: str
     template: str
     values: Callable[[PageResult, PageContext, Words], Values]
-    points: Callable[[PageResult], Iterable[OpenPoint]] = no_points
+    points: Callable[[PageResult], Iterable[OpenItem]] = no_points
     counts: Callable[[PageResult], str] = no_counts

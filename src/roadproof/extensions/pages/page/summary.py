@@ -12,7 +12,7 @@ from roadproof.evidence.strict import Json
 from roadproof.extensions.catalogue.catalogue_data import Figure
 from roadproof.extensions.pages.page.open_points import parts_left_out
 from roadproof.extensions.pages.page.results import PageResult
-from roadproof.extensions.pages.page.section_kind import OpenPoint
+from roadproof.extensions.pages.page.section_kind import OpenItem
 from roadproof.extensions.pages.page.templates import render
 from roadproof.frontends.report.sheet import excerpt
 from roadproof.library.words import spans
@@ -90,7 +90,7 @@ def overview(
     title: str,
     question: str,
     rejected: int = 0,
-    more: Iterable[OpenPoint] = (),
+    more: Iterable[OpenItem] = (),
     counts: str = "",
 ) -> Overview:
     """Return the row of a result in the summary; ``more``, ``counts``: as its section kind says."""
