@@ -43,7 +43,7 @@ def question(*numbers: int, **more: Any) -> FalsifyQuestion:
 def problem(number: int, **more: Any) -> TargetProblem:
     """Return the problem of a scenario, from the drive that the core knows."""
     if number not in _PATTERNS:
-        _PATTERNS[number] = rp.witness(number, jobs=1).evidence[0]
+        _PATTERNS[number] = rp.witness(number, objective="smooth", jobs=1).evidence[0]
     return question(number, **more).problem(name_of(number), _PATTERNS[number])
 
 

@@ -82,13 +82,22 @@ def _ending(error: BaseException) -> tuple[str, ExitCode]:
     """Return the message and the exit code for an error that ended a command."""
     if isinstance(error, RoadproofError):
         return str(error), ExitCode(error.exit_code)
-    if isinstance(error, KeyboardInterrupt):
+    if _is_interruption(error):
         return "interrupted", ExitCode.INTERRUPTED
     if isinstance(error, OSError) and error.errno is not None:
         return _of_system(error), ExitCode.BAD_INPUT
     reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     remedy = f"Set {TRACEBACK}=1 to see where it happened, and report it with the command line."
     return f"this is our fault: {reason}\n{remedy}", ExitCode.OUR_FAULT
+
+
+def _is_interruption(error: BaseException) -> bool:
+    """Return whether an interruption is the error or its cause.
+
+    Python turns one that comes while a class is made into a ``RuntimeError``.
+    """
+    cause = error.__cause__
+    return isinstance(error, KeyboardInterrupt) or (cause is not None and _is_interruption(cause))
 
 
 def _run(arguments: list[str]) -> int:
