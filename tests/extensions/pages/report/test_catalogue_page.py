@@ -60,7 +60,8 @@ def page(tmp_path_factory) -> tuple[Path, str]:
 
 def test_a_red_name_says_why_in_its_row_and_at_its_drive(page) -> None:
     rows = re.findall(
-        r"<tr(?: id=\"[^\"]*\")?><th scope=\"row\"[^>]*><a href=\"#test-0-\d\"( class=\"wrong\")?>(.*?)</tr>", page[1]
+        r"<tr(?: id=\"[^\"]*\")?><th scope=\"row\"[^>]*><a href=\"#test-0-\d\"( class=\"wrong\")?>(.*?)</tr>",
+        page[1],
     )
     assert [bool(red) for red, _ in rows] == [False, True, True]
     assert ["claims scenario_8, and shows scenario_4" in row for _, row in rows] == [False, True, False]
