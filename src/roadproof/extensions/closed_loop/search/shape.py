@@ -18,6 +18,7 @@ from roadproof.extensions.closed_loop.situation import (
     VehicleCourse,
     lane_change,
 )
+from roadproof.library.scenarios import SUBJECT
 from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Motion
 from roadproof.world.motion import state_at
@@ -61,7 +62,7 @@ class SituationShape:
     def vehicles(self) -> tuple[str, ...]:
         """All vehicles, SV first, then POVs in the order of their names."""
         names = sorted(self.pattern.drive.vehicles)
-        return ("SV", *(x for x in names if x != "SV"))
+        return (SUBJECT, *(x for x in names if x != SUBJECT))
 
     @cached_property
     def knobs(self) -> tuple[Knob, ...]:
@@ -71,7 +72,7 @@ class SituationShape:
     def _knobs(self) -> Iterator[Knob]:
         tenth, dt = Fraction(1, 10), self.clock.dt
         for name in self.vehicles:
-            if name == "SV":
+            if name == SUBJECT:
                 yield Knob("SV.speed", *_SPEEDS, tenth)
                 if any(None not in x.s or x.s != (None, None) for x in self.pattern.road.lanelets):
                     yield Knob("SV.place", -_PLACES, _PLACES, Fraction(1))
@@ -124,14 +125,14 @@ class SituationShape:
         self, name: str, known: Mapping[str, Fraction], before: Mapping[str, VehicleCourse]
     ) -> VehicleCourse:
         motion, along = self._motion(name), tuple[Phase, ...]()
-        if name == "SV":
+        if name == SUBJECT:
             s, speed = _round(motion.s) + known.get("SV.place", 0), known["SV.speed"]
         else:
             gap, reference = known[f"{name}.gap"], before[self._reference(name)]
             ahead = self._is_ahead(name)
             s = reference.s + gap + motion.length if ahead else reference.s - reference.length - gap
             top = self.limits[name].top
-            speed = min(max(before["SV"].v_lon + known[f"{name}.faster"], Fraction(0)), top)
+            speed = min(max(before[SUBJECT].v_lon + known[f"{name}.faster"], Fraction(0)), top)
             begin, lasts = (int(known[f"{name}.{x}"] / self.clock.dt) for x in ("begin", "lasts"))
             along = (Phase(begin, lasts, known[f"{name}.a_lon"]),)
         across = self._change(name, known)
@@ -165,7 +166,7 @@ class SituationShape:
                 ahead, behind = (motion, other) if self._is_ahead(name) else (other, motion)
                 return float(ahead.s - ahead.length - behind.s)
             case "faster":
-                return float(motion.v_lon - self._motion("SV").v_lon)
+                return float(motion.v_lon - self._motion(SUBJECT).v_lon)
             case "a_lon":
                 return float((state_at(motion, _FIT).v_lon - motion.v_lon) / _FIT)
             case "lasts":
