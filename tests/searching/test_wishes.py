@@ -69,14 +69,6 @@ def test_each_shipped_drive_fulfils_each_wish_that_says_something(typical):
         assert {*said} == {MIDDLE, TIME} | zone | order
 
 
-def test_evaluate_reads_the_24_drives_as_recordings(tmp_path, typical):
-    """Before, it rejected them, since the drives of 9 and 17 were that of 1."""
-    rp.export([x.drives[0] for x in typical.values()], "csv", tmp_path / "csv")
-    evaluation = rp.evaluate(tmp_path / "csv", jobs=1)
-    assert not evaluation.failed
-    assert len(evaluation.findings) == 24
-
-
 def holds(text: str, file: DriveFile, lane: str) -> bool:
     formula = read_claim(BASE, text).formula
     return judge(bind(formula, file.road, {"L": lane}, default_values(LIBRARY)), file.drive).holds
