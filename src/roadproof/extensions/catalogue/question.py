@@ -1,11 +1,11 @@
 """The question about a catalogue of tests: which targets they show, and which no test shows."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, Any, ClassVar
 
-from roadproof.errors import InputError, RoadproofError, UsageError
+from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answer import ClaimAnswer, JudgedTrace
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import Doc, Rule, read
@@ -29,8 +29,7 @@ from roadproof.extensions.catalogue.target_formulas import TargetFormulas
 from roadproof.extensions.catalogue.targets import find_targets, target_titles
 from roadproof.extensions.catalogue.view import CatalogueView
 from roadproof.extensions.drivers.restriction import restriction_of, unrestricted
-from roadproof.extensions.surveys.classify.classes import Classes, plan_of
-from roadproof.extensions.surveys.classify.division import divide
+from roadproof.extensions.surveys.classify.division import divide_surely
 from roadproof.extensions.surveys.survey import replay_steps
 from roadproof.extensions.traffic.evaluate.decisions import Drivers, driver_models
 from roadproof.questions.basis import Basis
@@ -113,7 +112,7 @@ class CatalogueQuestion:
 
     def _formulas_of(self, set_name: str) -> TargetFormulas:
         here = replace(self.basis, specification=self.basis.specification.in_set(set_name), sets=())
-        classes = _divided(here, self.settings.scenarios) if self.request.classes else None
+        classes = divide_surely(here, self.settings.scenarios) if self.request.classes else None
         return TargetFormulas(here.specification, self.settings.scenarios, classes, here.all_values())
 
     @cached_property
@@ -341,16 +340,3 @@ class CatalogueQuestion:
     def data(self, view: CatalogueView, place: EvidencePlace, seconds: float) -> Any:
         """Return the view as ``--json`` prints it."""
         return view.data(place, seconds)
-
-
-def _divided(basis: Basis, numbers: Sequence[int]) -> Classes:
-    """Return the classes of scenarios. Raises ``UsageError`` where the proofs leave them in doubt."""
-    try:
-        plan = plan_of(basis.specification, numbers)
-    except RoadproofError as error:
-        raise UsageError(f"{error}; or leave out classes with --no-classes") from None
-    division = divide(basis, plan, None, None, in_few_words=False)
-    if division.cut_off:
-        reasons = "; ".join(x.reason for x in division.doubts)
-        raise UsageError(f"the classes are in doubt ({reasons}): give more work, or use --no-classes")
-    return division.classes

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
-from roadproof.errors import InputError, RoadproofError, UsageError
+from roadproof.errors import InputError, UsageError
 from roadproof.evidence.claim import Claim, Exists, Mode, claim_of
 from roadproof.evidence.codec import read
 from roadproof.evidence.judged import JudgedDrive
@@ -20,8 +20,7 @@ from roadproof.extensions.closed_loop.search.problem import TargetProblem
 from roadproof.extensions.closed_loop.search.searching import Searching
 from roadproof.extensions.closed_loop.search.shape import SituationShape, limits_of
 from roadproof.extensions.closed_loop.situation import StepClock
-from roadproof.extensions.surveys.classify.classes import Classes, plan_of
-from roadproof.extensions.surveys.classify.division import divide
+from roadproof.extensions.surveys.classify.division import divide_surely
 from roadproof.extensions.traffic.evaluate.decisions import (
     Decision,
     Drivers,
@@ -100,7 +99,7 @@ class FalsifyQuestion:
     def formulas(self) -> TargetFormulas:
         """The formulas of all targets. Raises ``UsageError`` where classes are in doubt."""
         numbers = self.settings.scenarios
-        classes = divided(self.basis, numbers) if self.settings.classes else None
+        classes = divide_surely(self.basis, numbers) if self.settings.classes else None
         return TargetFormulas(self.basis.specification, numbers, classes, self.basis.all_values())
 
     @property
@@ -278,16 +277,3 @@ class TargetBatch:
 
 LOOP = 1
 """A number that changes with the loop, so that older stored answers do not count."""
-
-
-def divided(basis: Basis, numbers: Sequence[int]) -> Classes:
-    """Return the classes of scenarios. Raises ``UsageError`` where they are in doubt."""
-    try:
-        plan = plan_of(basis.specification, numbers)
-    except RoadproofError as error:
-        raise UsageError(f"{error}; or leave out classes with --no-classes") from None
-    division = divide(basis, plan, None, None, in_few_words=False)
-    if division.cut_off:
-        reasons = "; ".join(x.reason for x in division.doubts)
-        raise UsageError(f"the classes are in doubt ({reasons}): give more work, or use --no-classes")
-    return division.classes

@@ -5,11 +5,12 @@ classes made of them exclude each other and cover the scenarios. But a lost or i
 other classes or longer texts. So each is listed as undecided.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, ClassVar
 
+from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.codec import Doc, read
 from roadproof.extensions.surveys.classify.cells import (
     Axis,
@@ -241,3 +242,16 @@ def divide(
     """
     question = DivisionQuestion(basis, DivisionSettings(scenarios=plan.numbers, in_few_words=in_few_words))
     return question.view(decide_claims(question, None, jobs, progress, "cells", fresh=fresh).answers)
+
+
+def divide_surely(basis: Basis, numbers: Sequence[int]) -> Classes:
+    """Return the classes of scenarios. Raises ``UsageError`` where the proofs leave them in doubt."""
+    try:
+        plan = plan_of(basis.specification, numbers)
+    except RoadproofError as error:
+        raise UsageError(f"{error}; or leave out classes with --no-classes") from None
+    division = divide(basis, plan, None, None, in_few_words=False)
+    if division.cut_off:
+        reasons = "; ".join(x.reason for x in division.doubts)
+        raise UsageError(f"the classes are in doubt ({reasons}): give more work, or use --no-classes")
+    return division.classes
