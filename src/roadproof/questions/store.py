@@ -147,9 +147,15 @@ class Store:
         return None
 
     def has_given(self, answer: ClaimAnswer) -> bool:
-        """Return whether this program has given this very answer to the claim, in an earlier run."""
+        """Return whether this program has given this very answer to the claim, in an earlier run.
+
+        A shipped answer is that of another run, which nothing here has judged.
+        """
         known = self._known(answer.claim, self.key(answer.claim)) if self.reads_known else None
-        return known is not None and answer_data(known[0]) == answer_data(answer)
+        if known is None:
+            return False
+        former, origin = known
+        return origin == "cache" and answer_data(former) == answer_data(answer)
 
     def note(self, answer: ClaimAnswer) -> None:
         """Remember an answer that this program has judged again, for ``has_given``."""

@@ -331,6 +331,24 @@ def test_the_template_has_what_there_is_and_no_more(kinds: list[tuple[str, int]]
     assert named == {x for x in made if x[0] in "GS"} - {"G1"}
 
 
+def test_formulas_are_counted_one_by_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Formulas of one spec set have one label; the drive of one is not that of another."""
+    monkeypatch.chdir(tmp_path)
+    impossible = "v_lon(SV) > 20 m/s and v_lon(SV) < 10 m/s"
+    for name, formulas, shown in (
+        ("both", ("F v_lon(SV) > 20 m/s", "F v_lon(SV) > 21 m/s"), 2),
+        ("one", (impossible, "F v_lon(SV) > 21 m/s"), 1),
+        ("none", (impossible,), 0),
+    ):
+        rp.witness(*formulas, out=name, pictures=False, jobs=1)
+        text = fill_template("catalogue-coverage", [Path(name)], Path())
+        assert (f"{shown} formula{'s' * (shown != 1)} can happen" in text) is bool(shown)
+        assert ("Still to be shown" in text) is (shown < len(formulas))
+        Path("case.toml").write_text(text, "utf-8")
+        states = {rp.assurance("case.toml", jobs=1).states[f"Sn{k + 1}"] for k in range(min(shown, 1))}
+        assert states <= {ElementState.HOLDS}
+
+
 def test_what_a_folder_does_not_show_is_a_goal_of_its_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

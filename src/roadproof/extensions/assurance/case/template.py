@@ -188,20 +188,22 @@ def _folder_of_claims(path: str, kind: str, data: Fields, stored: QuestionFolder
     """Return the folder of answers whose claims the argument is about one by one."""
     if kind not in _SCENARIOS:
         return EvidenceFolder(path, kind, {})
-    own = {x: y for x, y in stored.answers.items() if not x.startswith(HELP)}
+    expect = _SCENARIOS[kind].expect
     groups: dict[str, dict[str, ClaimAnswer]] = {}
-    for name, answer in own.items():
-        groups.setdefault(stored.question.label(name) or answer.claim.query.text, {})[name] = answer
-    about = [x for x in groups if kind != "verdicts" or fnmatchcase(x, _PROPERTIES)]
-    if not about:
+    for name, answer in stored.answers.items():
+        label = stored.question.label(name)
+        if not name.startswith(HELP) and (kind != "verdicts" or fnmatchcase(label, _PROPERTIES)):
+            groups.setdefault(label if kind == "overlap" else name, {})[name] = answer  # parts of a pair
+    if not groups:
         raise InputError(f"{path} has no claim of a template property: run prove with names such as P2")
-    shown = [x for x in about if _is_shown(groups[x].values(), _SCENARIOS[kind].expect)]
+    shown = [x for x in groups if _is_shown(groups[x].values(), expect)]
     left = tuple(
         f"{x}: {', '.join(dict.fromkeys(str(y.verdict) for y in groups[x].values()))}"
-        for x in about
+        for x in groups
         if x not in shown
     )
-    properties = dict.fromkeys(re.split(r"[-\s]", x)[0] for x in shown)
+    labels = (stored.question.label(name) for x in shown for name in groups[x])
+    properties = dict.fromkeys(re.split(r"[-\s]", label)[0] for label in labels)
     is_numbered = all(x.get("scenario") is not None for x in data.items("verdicts") if isinstance(x, dict))
     words = {
         "set": stored.question.basis.specification.set_name,
@@ -210,7 +212,7 @@ def _folder_of_claims(path: str, kind: str, data: Fields, stored: QuestionFolder
         "drives": _number(len(shown), "scenario" if is_numbered else "formula"),
         "pairs": _number(len(shown), "pair"),
     }
-    files = [name for x in shown for name in groups[x]]
+    files = [name for x in shown for name, y in groups[x].items() if str(y.verdict) in expect]
     select = tuple(f"{x}.json" for x in files) if left else ()
     entries = len(files) if left or kind == "verdicts" else _count(stored)
     return EvidenceFolder(path, kind, words, entries=entries, select=select, left=left)
