@@ -73,7 +73,7 @@ def test_an_option_touches_two_files(copy):
     before = roadproof(copy, 0, "witness 4").splitlines()
     apply(copy, OPTION)
     after = roadproof(copy, 0, "witness 4 --brief").splitlines()
-    assert len(before) == 2
+    assert len(before) == 3
     assert len(after) == 1
     assert after[0].split()[:4] == before[0].split()[:4] == ["scenario", "4", "base", "WITNESSED"]
     assert re.search(

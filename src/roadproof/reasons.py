@@ -211,6 +211,12 @@ class ReasonKind(StrEnum):
     NO_DRIVE_OF_FORMULA = "no drive of its formula was found"
     JUDGED_WITH = "judged with {}"
     TEXT_CHANGED = "its text changed"
+    # Vehicles under test
+    CONTROLLER_FAILED = "the controller failed after {} simulations: {}"
+    NOT_PREVENTED = "{} simulations: it fails, but no driver model prevents a judged failure"
+    NO_FAILURE = "no failure was found in {} simulations"
+    SCENARIO_NOT_SHOWN = "it was not shown in {} simulations"
+    BREAKS_REQUIREMENT = "it keeps clear of the vehicle of its rule, but breaks the requirement, too"
     # Recordings
     OFF_ROAD = "on no lane at any time"
     OFF_LINE = "the reference line of the road does not follow their way"

@@ -322,6 +322,8 @@ READERS = {
     },
     "roadproof.extensions.surveys.classify.classes": {"--among"},
     "roadproof.extensions.surveys.covering": {"--wider"},
+    # Divides for catalogue and falsify.
+    "roadproof.extensions.surveys.classify.division": {"--no-classes"},
     "roadproof.frontends.api.relations": {"--among"},
     # Names a run of preventable.
     "roadproof.extensions.assurance.case.template": {"--model"},

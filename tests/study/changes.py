@@ -114,6 +114,7 @@ UNCHANGED: Mapping[str, str] = {
     "solution": "it is the answer; nothing is asked, and nothing goes into the cache",
     "strict": "swept where recordings are the question",
     "road": "swept with maps, in tests/extensions/traffic",
+    "tests": "points on the picture of an answer, which it leaves as it is; see test_plates.py",
 }
 """Options that the sweep leaves out where a question has no other value for them, with the reason."""
 DRIVER = {

@@ -174,6 +174,32 @@ def test_a_controller_that_ends_its_process_ends_no_other(tmp_path: Path) -> Non
         assert (folder / "possible-scenario_4.json").exists()
 
 
+def test_a_controller_that_never_fails_has_to_be_deterministic(tmp_path: Path) -> None:
+    """Drives are asked for twice, also where no failure is judged."""
+    found = falsify("Fickle", drivers=[], simulations=30, out=tmp_path / "out")
+    assert found.findings == {"scenario_4": "ERROR"}
+    assert "it is not deterministic" in found.targets[0].reason
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_the_answer_is_not_mixed_with_what_a_controller_prints(jobs: int) -> None:
+    asked = [
+        sys.executable,
+        "-m",
+        "roadproof",
+        "falsify",
+        f"{VEHICLES}:Talking",
+        "--among",
+        "4",
+        "--json",
+        "-",
+    ]
+    asked += ["--no-classes", "--drivers", "none", "--simulations", "10", "--fresh", "--jobs", str(jobs)]
+    done = subprocess.run(asked, capture_output=True, text=True, check=False)
+    assert json.loads(done.stdout)["targets"][0]["finding"] in ("FAILS", "SHOWN", "NOT SHOWN")
+    assert "step" in done.stderr
+
+
 @pytest.mark.parametrize("name", ["NotANumber", "Raising", "Moody"])
 def test_a_controller_that_fails_to_answer_is_an_error_of_its_own(name: str, tmp_path: Path) -> None:
     answer = falsify(name, out=tmp_path)

@@ -7,8 +7,9 @@ import pytest
 
 from extensions.closed_loop.loops import loop_of, problem
 from roadproof.extensions.closed_loop.errors import ControllerError
+from roadproof.extensions.closed_loop.protocol import OBSERVED
 from roadproof.extensions.closed_loop.search.shape import FRICTION
-from roadproof.extensions.closed_loop.simulation import SIGNALS, exact_drive
+from roadproof.extensions.closed_loop.simulation import exact_drive
 from roadproof.semantics.exact.replay import first_breach
 from roadproof.world.models import load_vehicle
 from roadproof.world.motion import states_at
@@ -35,7 +36,7 @@ def test_samples_are_those_of_the_exact_drive(name: str, number: int) -> None:
         times = [k * asked.shape.clock.dt for k in range(asked.shape.clock.steps)]
         for vehicle, motion in drive.vehicles.items():
             exact = states_at(motion, times)
-            for signal in SIGNALS:
+            for signal in OBSERVED:
                 sampled = getattr(trial.tracks[vehicle], signal)[:-1]
                 expected = [float(getattr(state, signal)) for state in exact]
                 assert np.allclose(sampled, expected, atol=1e-6), (vehicle, signal)

@@ -66,6 +66,22 @@ class Moody(Coasting):
         return -(Moody.calls % 7) / 10
 
 
+class Fickle(Coasting):
+    """Not deterministic: it brakes at random, and so is never near a failure."""
+
+    def step(self, observation, dt):
+        return random.uniform(-9.0, -5.0)
+
+
+class Talking(Coasting):
+    def reset(self, observation):
+        print("reset")
+
+    def step(self, observation, dt):
+        print("step")
+        return 0.0
+
+
 class LateBrake(Coasting):
     """Brakes so late that a careful driver would have prevented its collisions."""
 

@@ -1,7 +1,8 @@
 """The mode of claims about a vehicle under test: a search in closed loop answers them."""
 
+import sys
 from collections.abc import Generator
-from contextlib import closing
+from contextlib import closing, redirect_stdout
 from dataclasses import field
 from typing import Any, Literal, TypeAlias
 
@@ -32,8 +33,11 @@ class ControllerSearch:
     patience: float
 
     def run(self) -> FailureSearchOutcome:
-        """Return the outcome of the search in this process."""
-        with opened(self.source, self.searching.seed, self.patience) as controller:
+        """Return the outcome of the search in this process; what a controller prints goes to stderr."""
+        with (
+            redirect_stdout(sys.stderr),
+            opened(self.source, self.searching.seed, self.patience) as controller,
+        ):
             return self.searching.run(ControlLoop(controller, self.patience))
 
 
@@ -101,15 +105,11 @@ class ClosedLoop(OwnMode):
 
     def _reason(self, outcome: FailureSearchOutcome) -> Reason:
         if outcome.fault:
-            return ReasonKind.TOLD(
-                f"the controller failed after {outcome.count} simulations: {outcome.fault}"
-            )
+            return ReasonKind.CONTROLLER_FAILED(outcome.count, outcome.fault)
         if self.part == "fails" and outcome.failing is not None:
-            return ReasonKind.TOLD(
-                f"{outcome.count} simulations: it fails, but no driver model prevents a judged failure"
-            )
-        what = "no failure was found" if self.part == "fails" else "it was not shown"
-        return ReasonKind.TOLD(f"{what} in {outcome.count} simulations")
+            return ReasonKind.NOT_PREVENTED(outcome.count)
+        kind = ReasonKind.NO_FAILURE if self.part == "fails" else ReasonKind.SCENARIO_NOT_SHOWN
+        return kind(outcome.count)
 
 
 def _report(outcome: FailureSearchOutcome) -> UnknownReportData | None:

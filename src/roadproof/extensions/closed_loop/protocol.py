@@ -7,6 +7,11 @@ deterministic: after ``reset`` with the same observation, the same observations 
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
+from roadproof.world.signals import RECORDED
+
+OBSERVED: tuple[str, ...] = tuple(x for x in RECORDED if x != "a_lat")
+"""The signals of a vehicle that a controller sees."""
+
 
 @dataclass(slots=True)
 class ObservedVehicle:

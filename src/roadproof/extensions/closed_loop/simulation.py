@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from roadproof.extensions.closed_loop.errors import ControllerError
 from roadproof.extensions.closed_loop.protocol import (
+    OBSERVED,
     ControllerInput,
     ObservedLane,
     ObservedVehicle,
@@ -28,7 +29,6 @@ from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Road
 
 Floats: TypeAlias = npt.NDArray[np.float64]
-SIGNALS = ("s", "d", "v_lon", "v_lat", "a_lon")
 Rows: TypeAlias = "Sequence[tuple[Any, ...]]"
 """The values of several signals in each step."""
 _HALF = Fraction(1, 2)
@@ -57,7 +57,7 @@ def follow(courses: Sequence[VehicleCourse], situation: TrafficSituation, name: 
         float(x) for x in limits_as(situation.limits[name], float)
     )
     shape = (steps + 1, len(courses))
-    s, d, v, u, a = (np.zeros(shape) for _ in SIGNALS)
+    s, d, v, u, a = (np.zeros(shape) for _ in OBSERVED)
     along = np.array([_floats(x.along, steps) for x in courses]).T
     aside = np.array([_floats(x.across, steps) for x in courses]).T
     along = np.clip(along, least, greatest)
@@ -122,7 +122,7 @@ class ControlLoop:
         self._lanes: tuple[Road, tuple[ObservedLane, ...]] | None = None
 
     def run(self, situation: TrafficSituation, others: Mapping[str, Rows]) -> VehicleSamples:
-        """Return the motion of SV; ``others``: the SIGNALS of each POV in each step.
+        """Return the motion of SV; ``others``: the OBSERVED of each POV in each step.
 
         Raises ``ControllerError``.
         """
@@ -136,7 +136,7 @@ class ControlLoop:
         return VehicleSamples(s, d, v, u, a)
 
     def drive(self, situation: TrafficSituation, body: Body[Any], others: Sequence[Rows]) -> Rows:
-        """Ask the controller in each step; return SIGNALS and the acceleration across, at each instant.
+        """Ask the controller in each step; return OBSERVED and the acceleration across, at each instant.
 
         Numbers are of the kind of ``body``. Raises ``ControllerError``.
         """

@@ -7,6 +7,7 @@ linear in a step, so a limit on them that holds at both ends holds between.
 from typing import Generic, TypeVar
 
 from roadproof.extensions.closed_loop.situation import Limits
+from roadproof.world.signals import RECORDED
 
 N = TypeVar("N")
 FINE = 1000
@@ -19,20 +20,7 @@ class Body(Generic[N]):
     ``number``: makes a number of its kind, float or Fraction, of a fraction.
     """
 
-    __slots__ = (
-        "a_lat",
-        "a_lon",
-        "d",
-        "dt",
-        "goal",
-        "half",
-        "left",
-        "limits",
-        "pushes",
-        "s",
-        "v_lat",
-        "v_lon",
-    )
+    __slots__ = (*RECORDED, "dt", "goal", "half", "left", "limits", "pushes")
 
     def __init__(self, s: N, d: N, v_lon: N, v_lat: N, dt: N, half: N, limits: tuple[N, ...]) -> None:
         self.s, self.d, self.v_lon, self.v_lat = s, d, v_lon, v_lat

@@ -12,10 +12,9 @@ from typing import Any
 
 from roadproof.errors import InputError, MissingSolverError
 from roadproof.extensions.closed_loop.errors import ControllerError
-from roadproof.extensions.closed_loop.protocol import Answer, ControllerInput
+from roadproof.extensions.closed_loop.protocol import OBSERVED, Answer, ControllerInput
 
 _FAR = 1e6
-_SIGNALS = ("s", "d", "v_lon", "v_lat", "a_lon")
 _REAL = ("Real", "Float64")
 
 
@@ -76,12 +75,12 @@ class FmuController:
 
     def _set(self, observation: ControllerInput) -> None:
         ahead = observation.ahead()
-        known = {x: getattr(observation.me, x) for x in _SIGNALS}
+        known = {x: getattr(observation.me, x) for x in OBSERVED}
         known |= {"plan": observation.plan, "gap": _FAR, "closing": 0.0}
         if ahead is not None:
             known |= {"gap": ahead[0], "closing": observation.me.v_lon - ahead[1].v_lon}
         for other in observation.others:
-            known |= {f"{other.name}.{x}": getattr(other, x) for x in _SIGNALS}
+            known |= {f"{other.name}.{x}": getattr(other, x) for x in OBSERVED}
         named = [(self._inputs[name], value) for name, value in known.items() if name in self._inputs]
         if named:
             write = self._fmu.setFloat64 if self._is_third else self._fmu.setReal

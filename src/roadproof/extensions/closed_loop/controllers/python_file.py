@@ -5,6 +5,7 @@ import hashlib
 import inspect
 import sys
 from collections.abc import Iterator
+from contextlib import redirect_stdout
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
@@ -115,7 +116,8 @@ def _module(path: Path) -> ModuleType:
         sys.path.append(folder)
     sys.modules[name] = module
     try:
-        spec.loader.exec_module(module)
+        with redirect_stdout(sys.stderr):  # standard output is for answers
+            spec.loader.exec_module(module)
     except Exception as error:  # whatever the code of a user does
         del sys.modules[name]
         raise ControllerError(f"{path} cannot be run: {type(error).__name__}: {error}") from error

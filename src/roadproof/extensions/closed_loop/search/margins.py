@@ -9,7 +9,8 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from roadproof.extensions.closed_loop.simulation import SIGNALS, VehicleSamples
+from roadproof.extensions.closed_loop.protocol import OBSERVED
+from roadproof.extensions.closed_loop.simulation import VehicleSamples
 from roadproof.extensions.closed_loop.situation import StepClock, VehicleCourse
 from roadproof.library.bind import bind
 from roadproof.logic.formula import Formula
@@ -50,7 +51,7 @@ class Ruler:
         formula is no multiple of the step.
         """
         count = next(iter(tracks.values())).s.shape[1]
-        signals = {(x, name): getattr(track, x) for name, track in tracks.items() for x in SIGNALS}
+        signals = {(x, name): getattr(track, x) for name, track in tracks.items() for x in OBSERVED}
         sizes = {
             (size, name): np.full(count, float(getattr(course, size)))
             for name, course in courses.items()
@@ -64,4 +65,4 @@ class Ruler:
 
 def stacked(runs: Sequence[VehicleSamples]) -> VehicleSamples:
     """Return the samples of one vehicle in several simulations as columns."""
-    return VehicleSamples(*(np.stack([getattr(x, name) for x in runs], axis=1) for name in SIGNALS))
+    return VehicleSamples(*(np.stack([getattr(x, name) for x in runs], axis=1) for name in OBSERVED))

@@ -11,10 +11,10 @@ from roadproof.errors import RoadproofError
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
+from roadproof.extensions.closed_loop.protocol import OBSERVED
 from roadproof.extensions.closed_loop.search.margins import Ruler, stacked
 from roadproof.extensions.closed_loop.search.shape import SituationShape
 from roadproof.extensions.closed_loop.simulation import (
-    SIGNALS,
     ControlLoop,
     VehicleSamples,
     exact_drive,
@@ -86,7 +86,7 @@ class TargetProblem:
         first = situations[0]
         tracks = {name: follow([x.courses[name] for x in situations], first, name) for name in first.others}
         rows = {
-            name: np.stack([getattr(track, signal) for signal in SIGNALS], axis=-1).swapaxes(0, 1).tolist()
+            name: np.stack([getattr(track, signal) for signal in OBSERVED], axis=-1).swapaxes(0, 1).tolist()
             for name, track in tracks.items()
         }
         mine = [
@@ -168,9 +168,7 @@ class TargetProblem:
         pattern = self.shape.pattern
         bound = bind(breach.formula, pattern.road, pattern.lanes, self.values)
         if judge(bound, driven.drive).holds:
-            reason = ReasonKind.TOLD(
-                "it keeps clear of the vehicle of its rule, but breaks the requirement, too"
-            )
+            reason = ReasonKind.BREAKS_REQUIREMENT()
             return replace(decision, side="undecided", gap=None, reason=reason, driven=None)
         formula = f"({driven.formula}) and not {breach.text}"
         return replace(decision, driven=replace(driven, formula=formula))
@@ -195,7 +193,7 @@ def severity(outcome: Outcome | None) -> float:
 
 
 def _column(track: VehicleSamples, k: int) -> VehicleSamples:
-    return VehicleSamples(*(np.ascontiguousarray(getattr(track, name)[:, k]) for name in SIGNALS))
+    return VehicleSamples(*(np.ascontiguousarray(getattr(track, name)[:, k]) for name in OBSERVED))
 
 
 def _box(situation: TrafficSituation, name: str) -> tuple[float, float]:

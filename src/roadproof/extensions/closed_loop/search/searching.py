@@ -15,7 +15,7 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.closed_loop.errors import ControllerError
 from roadproof.extensions.closed_loop.search.problem import TargetProblem, Trial, prevents, severity
 from roadproof.extensions.closed_loop.search.reducing import Reduced, reduced
-from roadproof.extensions.closed_loop.simulation import ControlLoop
+from roadproof.extensions.closed_loop.simulation import ControlLoop, exact_drive
 from roadproof.extensions.drivers.outcome import Result
 from roadproof.extensions.traffic.evaluate.decisions import Decision
 from roadproof.runtime.progress import report_stage
@@ -99,7 +99,12 @@ class _SearchState:
     # --- generations ---------------------------------------------------------------------------------
 
     def search(self) -> None:
-        """Simulate generation after generation until the budget is spent or a wanted failure is found."""
+        """Simulate generation after generation until the budget is spent or a wanted failure is found.
+
+        Before, the controller drives twice in the pattern, since it has to do the same both times.
+        """
+        shape = self.problem.shape
+        exact_drive(self.loop, shape.situation(self._values(self._unit(shape.seed))))
         self._evaluate(self._first())
         if self.searching.method == "random":
             while not self._is_over:
