@@ -13,6 +13,7 @@ from roadproof.extensions.assurance.tracing import requirement_changes as requir
 from roadproof.extensions.assurance.tracing import requirements as requirements
 from roadproof.extensions.catalogue.cataloguing import catalogue as catalogue
 from roadproof.extensions.closed_loop.falsifying import falsify as falsify
+from roadproof.extensions.closed_loop.resimulation.resimulating import resimulate as resimulate
 from roadproof.extensions.drivers.preventing import preventable as preventable
 from roadproof.extensions.encoding.encode import encode as encode
 from roadproof.extensions.encoding.explaining import conflict as conflict

@@ -216,6 +216,7 @@ class ReasonKind(StrEnum):
     NOT_PREVENTED = "{} simulations: it fails, but no driver model prevents a judged failure"
     NO_FAILURE = "no failure was found in {} simulations"
     SCENARIO_NOT_SHOWN = "it was not shown in {} simulations"
+    CONTROLLER_GAVE_NO_DRIVE = "the controller failed: {}"
     BREAKS_REQUIREMENT = "it keeps clear of the vehicle of its rule, but breaks the requirement, too"
     # Recordings
     OFF_ROAD = "on no lane at any time"

@@ -309,6 +309,15 @@ def of_falsify(run: Run, out: Path, traffic: Path) -> None:
     examine(run("falsify", f"{vehicles}:LateBrake", *asked))
 
 
+def of_resimulate(run: Run, out: Path, traffic: Path) -> None:
+    vehicles = Path(__file__).parents[1] / "extensions" / "closed_loop" / "vehicles.py"
+    asked = (f"{vehicles}:Speeding", traffic, "--drivers", "careful", "--jobs", 1)
+    told = run("resimulate", *asked, "--no-pictures", "--out", out)
+    assert {x["finding"] for x in told["occurrences"]} == {"FAILS", "KEPT"}
+    examine(told, folder=out)
+    examine(run("resimulate", *asked))
+
+
 def of_overlap(run: Run, out: Path, traffic: Path) -> None:
     asked = ("--among", "4,5,8", "--jobs", 1)
     told = run("overlap", *asked, "--no-pictures", "--out", out)

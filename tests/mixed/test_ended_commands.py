@@ -28,6 +28,7 @@ ARGUMENTS = {
     "evaluate": ["."],
     "trace": ["r.toml"],
     "falsify": ["x.py:X"],
+    "resimulate": ["x.py:X", "."],
 }
 
 

@@ -14,6 +14,11 @@ class Coasting:
         return 0.0
 
 
+class Speeding(Coasting):
+    def step(self, observation, dt):
+        return 2.0
+
+
 class Sudden(Coasting):
     """Brakes and steers in ways that meet every limit."""
 

@@ -26,7 +26,17 @@ EXTENSION = Extension(
     schemas=("schemas:TITLES",),
     checked_files={".toml": "checking:check_case"},
     options=dict.fromkeys(
-        ("prove", "check", "witness", "evaluate", "coverage", "catalogue", "preventable", "falsify"),
+        (
+            "prove",
+            "check",
+            "witness",
+            "evaluate",
+            "coverage",
+            "catalogue",
+            "preventable",
+            "falsify",
+            "resimulate",
+        ),
         "options:BuildResultOptions",
     ),
     sections={"trace": "page:TRACE"},

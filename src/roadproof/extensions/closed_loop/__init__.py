@@ -8,11 +8,17 @@ EXTENSION = Extension(
     label="incubating",
     page="docs/tutorials/closed-loop.md",
     needs=("catalogue", "drivers", "exchange", "pages", "surveys", "traffic"),
-    functions={"falsify": "falsifying:falsify"},
-    questions={"falsify": "question:FalsifyQuestion"},
-    answers={"falsify": "falsifying:Falsification"},
+    functions={"falsify": "falsifying:falsify", "resimulate": "resimulation.resimulating:resimulate"},
+    questions={
+        "falsify": "question:FalsifyQuestion",
+        "resimulate": "resimulation.question:ResimulationQuestion",
+    },
+    answers={
+        "falsify": "falsifying:Falsification",
+        "resimulate": "resimulation.resimulating:Resimulated",
+    },
     evidence={"roadproof/simulations/1": "simulations_file:SimulationsFile"},
     specifications={"closed_loop": "closed_loop.spec"},
-    sections={"falsify": "page:FALSIFY"},
+    sections={"falsify": "page:FALSIFY", "resimulate": "resimulation.page:RESIMULATE"},
     schemas=("schemas:TITLES",),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 from roadproof.frontends.settings.keywords import BudgetKeywords, ModelsKeywords, RunKeywords, SharingKeywords
 
@@ -14,15 +14,38 @@ if TYPE_CHECKING:
     from roadproof.library.bind import Number
 
 
-class FalsifyKeywords(ModelsKeywords, BudgetKeywords, SharingKeywords, RunKeywords, total=False):
-    among: Among
+class ControllerRunsKeywords(TypedDict, total=False):
     require: Iterable[str]
     drivers: Iterable[str] | None
+    step: Number
+    seconds: Number
+    patience: float
+
+
+class FalsifyKeywords(
+    ModelsKeywords,
+    ControllerRunsKeywords,
+    BudgetKeywords,
+    SharingKeywords,
+    RunKeywords,
+    total=False,
+):
+    among: Among
     failures: Wanted
     classes: bool
     simulations: int
     seed: int
     method: Method
-    step: Number
-    seconds: Number
-    patience: float
+
+
+class ResimulateKeywords(
+    ModelsKeywords,
+    ControllerRunsKeywords,
+    BudgetKeywords,
+    SharingKeywords,
+    RunKeywords,
+    total=False,
+):
+    among: Among
+    kinds: Iterable[str]
+    road: str | None

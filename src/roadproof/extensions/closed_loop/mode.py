@@ -1,16 +1,16 @@
 """The mode of claims about a vehicle under test: a search in closed loop answers them."""
 
 import sys
-from collections.abc import Generator
-from contextlib import closing, redirect_stdout
+from contextlib import redirect_stdout
 from dataclasses import field
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 from roadproof.evidence.answer import ClaimAnswer, undecided
 from roadproof.evidence.answer_files import Cause, UnknownReportData
 from roadproof.evidence.claim import Claim, OwnMode
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.closed_loop.controllers.opening import ControllerSource, opened
+from roadproof.extensions.closed_loop.isolation import isolated
 from roadproof.extensions.closed_loop.search.problem import prevents
 from roadproof.extensions.closed_loop.search.searching import FailureSearchOutcome, Searching
 from roadproof.extensions.closed_loop.simulation import ControlLoop
@@ -39,6 +39,11 @@ class ControllerSearch:
             opened(self.source, self.searching.seed, self.patience) as controller,
         ):
             return self.searching.run(ControlLoop(controller, self.patience))
+
+    @staticmethod
+    def lost(reason: Reason) -> FailureSearchOutcome:
+        """Return the outcome where the process ended."""
+        return FailureSearchOutcome(fault=f"it ended its process: {reason}")
 
 
 @dataclass(frozen=True)
@@ -78,7 +83,7 @@ class ClosedLoop(OwnMode):
         if self.key not in _known:
             while len(_known) >= _MOST:
                 del _known[next(iter(_known))]
-            _known[self.key] = _isolated(self.driven)
+            _known[self.key] = isolated(self.driven)
         return _known[self.key]
 
     def _file(self, claim: Claim, outcome: FailureSearchOutcome) -> SimulationsFile:
@@ -124,24 +129,3 @@ def _report(outcome: FailureSearchOutcome) -> UnknownReportData | None:
         without_assumptions=False,
         detail="",
     )
-
-
-def _isolated(driven: ControllerSearch) -> FailureSearchOutcome:
-    """Return the outcome of a search in a process of its own, which a controller may end."""
-    from roadproof.runtime import pool
-    from roadproof.runtime.worker import is_worker
-
-    if is_worker():
-        return driven.run()
-
-    def lose(job: Any, reason: Reason) -> FailureSearchOutcome:
-        return FailureSearchOutcome(fault=f"it ended its process: {reason}")
-
-    answers: Generator[tuple[int, FailureSearchOutcome | None], None, None]
-    answers = pool.work(_run, [driven, None], 1, lose)
-    with closing(answers):
-        return next(x for place, x in answers if place == 0 and x is not None)
-
-
-def _run(driven: ControllerSearch | None) -> FailureSearchOutcome | None:
-    return None if driven is None else driven.run()

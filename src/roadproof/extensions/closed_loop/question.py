@@ -14,6 +14,7 @@ from roadproof.extensions.catalogue.target_formulas import TargetFormulas
 from roadproof.extensions.closed_loop.claim_names import FAILS, POSSIBLE, SHOWN, SIMULATED, claim_name
 from roadproof.extensions.closed_loop.controllers.opening import ControllerSource
 from roadproof.extensions.closed_loop.data import FalsifyRequest
+from roadproof.extensions.closed_loop.driver_drives import driven_claims
 from roadproof.extensions.closed_loop.mode import ClosedLoop, ControllerSearch, Part
 from roadproof.extensions.closed_loop.requirement import VehicleRequirement, read_requirement
 from roadproof.extensions.closed_loop.search.problem import TargetProblem
@@ -26,7 +27,6 @@ from roadproof.extensions.traffic.evaluate.decisions import (
     Drivers,
     content_of,
     driver_models,
-    manoeuvre_of,
 )
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import SUBJECT, name_of, number_in
@@ -201,20 +201,8 @@ class FalsifyQuestion:
 
     def driven(self, target: str, failing: JudgedDrive) -> Iterator[tuple[str, Decision, Claim]]:
         """Yield for each driver model the claim about its drive in the place of the controller."""
-        file, home = failing.file, self.basis.specification
-        if self.drivers is None or manoeuvre_of(target) is None:
-            return
-        for decision in self.decisions(target, failing):
-            if decision.driven is not None:
-                mode = Exists(
-                    road=file.road,
-                    horizon=decision.driven.rests,
-                    collisions=True,
-                    explain=False,
-                    like=decision.driven.drive,
-                )
-                claim = claim_of(home, read_claim(home, decision.driven.formula), mode, {})
-                yield claim_name(FAILS, target, decision.driver), decision, claim
+        home = self.basis.specification
+        yield from driven_claims(home, failing, self.decisions(target, failing), FAILS, target)
 
     def label(self, name: str) -> str:
         """Return what the claim of a name is about, in words."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.extensions.catalogue.settings import driver_models_or_none
 from roadproof.frontends.settings import groups
-from roadproof.frontends.settings.option import extensible, option, output, search
+from roadproof.frontends.settings.option import Settings, extensible, option, output, search
 from roadproof.frontends.settings.readers import decimal, seconds, whole
 from roadproof.runtime.records import dataclass
 
@@ -22,12 +22,10 @@ if TYPE_CHECKING:
 COLLISION = "G not collision(SV, POV)"
 
 
-@extensible("falsify")
 @dataclass(frozen=True, kw_only=True)
-class Falsify(groups.DefinitionsSettings, groups.Models, groups.BudgetSettings, groups.Sharing, groups.Run):
-    """Options of ``falsify``."""
+class ControllerRuns(Settings):
+    """Requirements on a controller, the driver models beside it, and its clock."""
 
-    among: Among = groups.scenarios_such_as("1-8", keyword=True)
     require: Iterable[str] = option(
         (COLLISION,),
         "--require 'G FORMULA'",
@@ -40,6 +38,38 @@ class Falsify(groups.DefinitionsSettings, groups.Models, groups.BudgetSettings, 
         "driver models put in the place of SV in a failing drive: careful,r157, or none (default: all)",
         read=driver_models_or_none,
     )
+    step: Number = search(
+        Fraction(1, 10),
+        "--step S",
+        "seconds between questions to the controller (default: 0.1)",
+        read=seconds,
+        rare=True,
+    )
+    seconds: Number = search(
+        Fraction(10), "--seconds S", "length of a simulation (default: 10)", read=seconds, rare=True
+    )
+    patience: float = search(
+        10.0,
+        "--patience S",
+        "seconds that the controller may take for a simulation or a reply (default: 10)",
+        read=decimal,
+        rare=True,
+    )
+
+
+@extensible("falsify")
+@dataclass(frozen=True, kw_only=True)
+class Falsify(
+    groups.DefinitionsSettings,
+    groups.Models,
+    ControllerRuns,
+    groups.BudgetSettings,
+    groups.Sharing,
+    groups.Run,
+):
+    """Options of ``falsify``."""
+
+    among: Among = groups.scenarios_such_as("1-8", keyword=True)
     failures: Wanted = option(
         "any",
         "--failures KIND",
@@ -62,23 +92,6 @@ class Falsify(groups.DefinitionsSettings, groups.Models, groups.BudgetSettings, 
         choices=("cma", "random"),
         rare=True,
     )
-    step: Number = search(
-        Fraction(1, 10),
-        "--step S",
-        "seconds between questions to the controller (default: 0.1)",
-        read=seconds,
-        rare=True,
-    )
-    seconds: Number = search(
-        Fraction(10), "--seconds S", "length of a simulation (default: 10)", read=seconds, rare=True
-    )
-    patience: float = search(
-        10.0,
-        "--patience S",
-        "seconds that the controller may take for a simulation or a reply (default: 10)",
-        read=decimal,
-        rare=True,
-    )
     effort: float = option(
         60.0,
         "--effort N",
@@ -99,4 +112,29 @@ class Falsify(groups.DefinitionsSettings, groups.Models, groups.BudgetSettings, 
         keyword=False,
         rare=True,
     )
+    pictures: bool = groups.pictures_of(command_line_only=True)
+
+
+@extensible("resimulate")
+@dataclass(frozen=True, kw_only=True)
+class Resimulate(
+    groups.DefinitionsSettings,
+    groups.Models,
+    ControllerRuns,
+    groups.BudgetSettings,
+    groups.Sharing,
+    groups.Run,
+):
+    """Options of ``resimulate``."""
+
+    among: Among = option(None, "--among N-M", "only these scenarios (default: all of two or three vehicles)")
+    kinds: Iterable[str] = option(
+        ("Car",),
+        "--class C",
+        "class of the vehicles in a scenario; may be repeated (default: Car)",
+        gather=tuple,
+        rare=True,
+    )
+    road: str | None = groups.map_road()
+    out: str | Path | None = groups.folder_for("drives, pictures")
     pictures: bool = groups.pictures_of(command_line_only=True)

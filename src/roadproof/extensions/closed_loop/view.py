@@ -11,15 +11,14 @@ from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.closed_loop.claim_names import FAILS, POSSIBLE, SHOWN, SIMULATED, claim_name
 from roadproof.extensions.closed_loop.data import SCHEMA, FalsifyData, Finding, TargetResult
+from roadproof.extensions.closed_loop.driver_drives import confirmed, verdict_data
 from roadproof.extensions.closed_loop.search.problem import prevents
 from roadproof.extensions.closed_loop.simulations_file import SimulationsFile
-from roadproof.extensions.drivers.verdict import DriverVerdict
 from roadproof.extensions.traffic.evaluate.decisions import Decision
 from roadproof.library.scenarios import name_of, number_in
 from roadproof.questions.question import Answers, EvidencePlace, heading_of
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.records import dataclass
-from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:
     from roadproof.extensions.closed_loop.question import FalsifyQuestion
@@ -122,13 +121,9 @@ def _target(question: FalsifyQuestion, name: str, known: Answers, shown_by: tupl
         shown_by,
     )
     if failing is not None and failing.drive is not None:
-        pairs = [(x, known.get(key)) for key, x, _ in question.driven(name, failing.drive)]
-        decisions = {x.driver: x for x in question.decisions(name, failing.drive)}
-        for x, answer in pairs:
-            if answer is None or answer.verdict is not Verdict.WITNESSED:
-                decisions[x.driver] = replace(x, side="undecided", gap=None, instant=None, speed=None)
-        driven = {x.driver: answer for x, answer in pairs if answer is not None}
-        made = replace(made, decisions=tuple(decisions.values()), driven=driven)
+        decisions = question.decisions(name, failing.drive)
+        decisions, driven = confirmed(decisions, question.driven(name, failing.drive), known)
+        made = replace(made, decisions=decisions, driven=driven)
         if question.settings.wanted == "any" or prevents(made.decisions):
             return replace(made, finding="FAILS")
     if possible is not None and possible.certificate is not None:
@@ -180,21 +175,6 @@ def _data(x: TargetView, place: EvidencePlace) -> TargetResult:
         values={} if file is None else file.values,
         driven={name: place(claim_name(FAILS, x.name, name), y) for name, y in x.driven.items() if y.drive},
         simulated=None if x.simulated is None else place(claim_name(SIMULATED, x.name), x.simulated),
-        drivers=tuple(map(_driver, x.decisions)),
-        reason=x.reason,
-    )
-
-
-def _driver(x: Decision) -> DriverVerdict:
-    return DriverVerdict(
-        scenario=x.scenario,
-        vehicles=x.vehicles,
-        driver=x.driver,
-        side=x.side,
-        at=x.at,
-        gap=x.gap,
-        instant=x.instant,
-        speed=x.speed,
-        start=x.start,
+        drivers=tuple(map(verdict_data, x.decisions)),
         reason=x.reason,
     )

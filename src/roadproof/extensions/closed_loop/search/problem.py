@@ -1,16 +1,16 @@
 """The problem of a search: a target, the formulas that measure a simulation, and the judgement of a drive."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import field
 from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
 
-from roadproof.errors import RoadproofError
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
+from roadproof.extensions.closed_loop.driver_drives import decisions_on, models_of
 from roadproof.extensions.closed_loop.protocol import OBSERVED
 from roadproof.extensions.closed_loop.search.margins import Ruler, stacked
 from roadproof.extensions.closed_loop.search.shape import SituationShape
@@ -24,12 +24,9 @@ from roadproof.extensions.closed_loop.situation import TrafficSituation
 from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.drivers.outcome import Outcome, Result
 from roadproof.extensions.drivers.sampled_replay import SampledScene, Track, replay_samples
-from roadproof.extensions.traffic.evaluate.decisions import Decision, Drivers, decide_drive, manoeuvre_of
-from roadproof.library.bind import bind
+from roadproof.extensions.traffic.evaluate.decisions import Decision, Drivers, manoeuvre_of
 from roadproof.library.scenarios import SUBJECT
-from roadproof.reasons import ReasonKind
 from roadproof.runtime.records import dataclass
-from roadproof.semantics.exact.judging import judge
 
 SHOWS, BREAKS = "shows", "breaks"
 
@@ -75,10 +72,7 @@ class TargetProblem:
     @property
     def models(self) -> tuple[str, ...]:
         """The driver models that speak of the scenario; the first one guides the search."""
-        manoeuvre = manoeuvre_of(self.name)
-        if self.drivers is None or manoeuvre is None:
-            return ()
-        return self.drivers.of(manoeuvre)
+        return models_of(self.drivers, self.name)
 
     def run(self, loop: ControlLoop, every: Sequence[tuple[float, ...]]) -> list[Trial]:
         """Simulate some values of the knobs. Raises ``ControllerError`` with the values in its message."""
@@ -152,26 +146,7 @@ class TargetProblem:
 
     def decisions(self, drive: JudgedDrive) -> tuple[Decision, ...]:
         """Return the exact decisions of the driver models on a drive."""
-        if self.drivers is None or not self.models:
-            return ()
-        try:
-            every = tuple(decide_drive(drive.file, self.drivers, self.name, self.shape.vehicles, 0.0))
-        except RoadproofError:
-            return ()  # a drive that no model can be put into, such as one without a lane below SV
-        return tuple(map(self._with_requirement, every))
-
-    def _with_requirement(self, decision: Decision) -> Decision:
-        """Return a decision; a model prevents a failure only if its own drive keeps the requirement, too."""
-        driven, breach = decision.driven, self.breach
-        if decision.side != "preventable" or driven is None or breach is None:
-            return decision
-        pattern = self.shape.pattern
-        bound = bind(breach.formula, pattern.road, pattern.lanes, self.values)
-        if judge(bound, driven.drive).holds:
-            reason = ReasonKind.BREAKS_REQUIREMENT()
-            return replace(decision, side="undecided", gap=None, reason=reason, driven=None)
-        formula = f"({driven.formula}) and not {breach.text}"
-        return replace(decision, driven=replace(driven, formula=formula))
+        return decisions_on(drive, self.drivers, self.name, self.shape.vehicles, self.breach, self.values)
 
 
 def prevents(decisions: Sequence[Decision]) -> bool:
