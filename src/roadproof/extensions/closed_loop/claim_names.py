@@ -2,6 +2,8 @@
 
 POSSIBLE, SIMULATED, FAILS, SHOWN = "possible", "simulated", "fails", "shown"
 """What claims about a target are about: the beginning of their names."""
+BREAKS, KEEPS = "breaks", "keeps"
+"""What claims about an occurrence in a recording are about."""
 
 
 def claim_name(part: str, target: str, driver: str = "") -> str:

@@ -11,7 +11,7 @@ from roadproof.evidence.codec import read
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.subject import OTHER, Subject
 from roadproof.extensions.catalogue.target_formulas import TargetFormulas
-from roadproof.extensions.closed_loop.claim_names import claim_name
+from roadproof.extensions.closed_loop.claim_names import BREAKS, KEEPS, claim_name
 from roadproof.extensions.closed_loop.controllers.opening import ControllerSource
 from roadproof.extensions.closed_loop.driver_drives import decisions_on, driven_claims, models_of
 from roadproof.extensions.closed_loop.question import LOOP
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
     from roadproof.extensions.closed_loop.resimulation.data import ResimulationData
     from roadproof.extensions.closed_loop.resimulation.view import ResimulationView
     from roadproof.questions.question import EvidencePlace
-
-BREAKS, KEEPS = "breaks", "keeps"
-"""What claims about an occurrence are about: the beginning of their names."""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.catalogue.drive_targets import targets_shown
 from roadproof.extensions.catalogue.entries import Freedom
-from roadproof.extensions.closed_loop.claim_names import claim_name
+from roadproof.extensions.closed_loop.claim_names import BREAKS, KEEPS, claim_name
 from roadproof.extensions.closed_loop.driver_drives import confirmed, verdict_data
 from roadproof.extensions.closed_loop.protocol import OBSERVED
 from roadproof.extensions.closed_loop.resimulation.data import (
@@ -23,7 +23,6 @@ from roadproof.extensions.closed_loop.resimulation.data import (
     RecordedOccurrence,
     ResimulationData,
 )
-from roadproof.extensions.closed_loop.resimulation.question import BREAKS, KEEPS
 from roadproof.extensions.closed_loop.resimulation.recorded import least_gap
 from roadproof.extensions.closed_loop.simulation import VehicleSamples
 from roadproof.extensions.traffic.evaluate.decisions import Decision
