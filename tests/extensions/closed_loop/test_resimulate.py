@@ -17,7 +17,7 @@ from extensions.closed_loop.loops import VEHICLES
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import judge_file
-from roadproof.extensions.closed_loop.resimulation.recorded import least_gap
+from roadproof.extensions.closed_loop.resimulation.occurrence import least_gap
 from roadproof.extensions.closed_loop.resimulation.resimulating import Resimulated
 from roadproof.extensions.closed_loop.simulation import VehicleSamples
 from roadproof.frontends.cli.main import main
@@ -67,16 +67,20 @@ def test_others_move_as_the_file_says(coasting: Resimulated, recordings: Path) -
         assert x.drive is not None
         about, vehicles = x.occurrence, x.drive.file.drive.vehicles
         assert len(vehicles) == len(about.vehicles) + about.others
-        numbers = {**about.vehicles, **{n: int(n[1:]) for n in vehicles if n.startswith("V")}}
+        numbers = {**about.vehicles, **{n: n[1:] for n in vehicles if n.startswith("V")}}
         first = about.first_frame
-        way = 1 if float(rows[numbers["POV" if "POV" in numbers else "POV1"]][first]["xVelocity"]) > 0 else -1
+        way = (
+            1
+            if float(rows[int(numbers["POV" if "POV" in numbers else "POV1"])][first]["xVelocity"]) > 0
+            else -1
+        )
         for name, number in numbers.items():
             if name == "SV":
                 continue
-            begin = np.array(place(rows[number][first], way))
+            begin = np.array(place(rows[int(number)][first], way))
             for frame in range(first, first + int(about.seconds * RATE) + 1, 10):
                 state = state_at(vehicles[name], Fraction(frame - first, RATE))
-                moved = np.array(place(rows[number][frame], way)) - begin
+                moved = np.array(place(rows[int(number)][frame], way)) - begin
                 mine = float(state.s - vehicles[name].s), float(state.d - vehicles[name].d)
                 assert np.abs(moved - mine).max() <= about.deviation + 0.02
                 compared += 1
@@ -90,7 +94,7 @@ def test_the_vehicle_under_test_begins_as_recorded(coasting: Resimulated, record
         assert x.drive is not None
         about, vehicles = x.occurrence, x.drive.file.drive.vehicles
         other = next(name for name in about.vehicles if name != "SV")
-        me, its = (rows[about.vehicles[n]][about.first_frame] for n in ("SV", other))
+        me, its = (rows[int(about.vehicles[n])][about.first_frame] for n in ("SV", other))
         forward = float(me["xVelocity"]) > 0
         front = [float(r["x"]) + (float(r["width"]) if forward else 0.0) for r in (me, its)]
         apart = (front[1] - front[0]) * (1 if forward else -1)
@@ -152,7 +156,7 @@ def test_recorded_gaps_are_those_of_the_file(coasting: Resimulated, recordings: 
     for x in coasting.occurrences:
         about, gaps = x.occurrence, list[float]()
         steps = int(about.seconds * 10)
-        me, *others = (boxes_of(rows[n], about.first_frame, steps) for n in about.vehicles.values())
+        me, *others = (boxes_of(rows[int(n)], about.first_frame, steps) for n in about.vehicles.values())
         for other in others:
             for k in range(steps + 1):
                 low, high = sorted(((b[0][k], b[2][k]) for b in (me, other)), key=lambda z: z[0])
@@ -217,6 +221,59 @@ def test_recordings_without_the_scenario_are_refused_by_name(recordings: Path) -
         resimulated("Coasting", recordings, seconds=0.05)
     with pytest.raises(UsageError, match="drivers=nobody"):
         resimulated("Coasting", recordings, drivers=["nobody"])
+
+
+# --- drive files -----------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="session")
+def regression(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("regression") / "tests"
+    found = rp.falsify(
+        f"{VEHICLES}:LateBrake", among=[1, 4], classes=False, drivers=["careful"], simulations=200, jobs=1
+    )
+    assert len(found.view.failures) == 2
+    found.write_tests(folder)
+    return folder
+
+
+def test_the_controller_that_failed_drives_its_tests_as_before(regression: Path) -> None:
+    """Its drives are those of the files, fraction by fraction."""
+    answer = resimulated("LateBrake", regression, among=None)
+    assert answer.findings == {"failure_scenario_1": "FAILS", "failure_scenario_4": "FAILS"}
+    for x in answer.occurrences:
+        assert x.drive is not None
+        file = load_drive(regression / f"{x.occurrence.recording}.json")
+        assert x.drive.file.drive == file.drive
+        assert x.occurrence.deviation == 0
+        assert x.gap == x.occurrence.gap == 0
+        assert x.shows == x.occurrence.scenarios
+    one = resimulated("LateBrake", regression / "failure-scenario_4.json", among=None)
+    assert [*one.findings] == ["failure_scenario_4"]
+
+
+def test_another_controller_keeps_the_requirements_in_the_tests(regression: Path) -> None:
+    answer = resimulated("HardBrake", regression, among=None)
+    assert {*answer.findings.values()} == {"KEPT"}
+    assert answer.exit_code is ExitCode.AS_EXPECTED
+    assert [*resimulated("HardBrake", regression, among=[4]).findings] == ["failure_scenario_4"]
+
+
+def test_drives_with_other_vehicles_are_refused_by_name(regression: Path, tmp_path: Path) -> None:
+    text = (regression / "failure-scenario_4.json").read_text()
+    (tmp_path / "a.json").write_text(text.replace('"POV"', '"truck"'))
+    with pytest.raises(InputError, match="its vehicles are SV, truck; name them SV and POV"):
+        resimulated("Coasting", tmp_path, among=None)
+    with pytest.raises(InputError, match="none of the scenarios 9 occurs in it"):
+        resimulated("Coasting", regression, among=[9])
+
+
+def test_files_of_one_name_but_for_signs_have_ids_of_their_own(regression: Path, tmp_path: Path) -> None:
+    for name in ("a-b.json", "a_b.json", "a b.json"):
+        (tmp_path / name).write_bytes((regression / "failure-scenario_4.json").read_bytes())
+    answer = resimulated("LateBrake", tmp_path, among=None, out=tmp_path / "out")
+    assert sorted(answer.findings) == ["a_b", "a_b_2", "a_b_3"]
+    assert len([*(tmp_path / "out").glob("breaks-a_b*[0-9b].json")]) == 3
 
 
 def random_tracks(random: np.random.Generator) -> Iterator[VehicleSamples]:

@@ -107,3 +107,8 @@ def coast(observation, dt):
 
 
 NOT_CALLABLE = 3
+
+
+class HardBrake(Coasting):
+    def step(self, observation, dt):
+        return -9.0

@@ -21,12 +21,12 @@ failed, or no drive was judged.
 
 @dataclass(frozen=True, kw_only=True)
 class RecordedOccurrence:
-    """Scenarios that occur in a recording with one SV, from a frame on."""
+    """Scenarios that occur in a recording or a drive with one SV, from a frame on."""
 
     id: Annotated[str, Rule(least=1, pattern="^[A-Za-z0-9_]+$"), Doc("Its name in this answer.")]
-    recording: Name
-    scenarios: Annotated[tuple[shared.Number, ...], Rule(least=1)]
-    vehicles: Annotated[Mapping[str, int], Doc("The numbers of the vehicles in the recording, by role.")]
+    recording: Annotated[Name, Doc("The name of the recording, or of the file of the drive.")]
+    scenarios: Annotated[tuple[shared.Number, ...], Doc("Those that occur; a drive may show none.")]
+    vehicles: Annotated[Mapping[str, str], Doc("The vehicles of the recording or drive, by role.")]
     lane: Annotated[str, Doc("The lane of the match; empty where the scenarios name none.")]
     first_frame: int
     seconds: Annotated[Fraction, Doc("How long the controller drives, in s.")]
@@ -35,11 +35,11 @@ class RecordedOccurrence:
         int, Rule(minimum=0), Doc("Vehicles nearby that are left out, since they come or go meanwhile.")
     ]
     deviation: Annotated[
-        float, Rule(minimum=0), Doc("By how much POVs differ from the recording at most, in m.")
+        float, Rule(minimum=0), Doc("By how much other vehicles are off their places at most, in m.")
     ]
     gap: Annotated[
         float | None,
-        Doc("The least gap of the recorded SV to a POV in its way, in m; null where there is none."),
+        Doc("The least gap of the former SV to a POV in its way, in m; null where there is none."),
     ]
     sha256: Annotated[Sha, Doc("Of the motion of all vehicles, of their limits and of the road.")]
 
@@ -51,7 +51,7 @@ class ResimulationRequest:
     controller: Annotated[Name, Doc("FILE.py:NAME, FILE.fmu, or a command.")]
     kind: Kind
     sha256: Annotated[Sha, Doc("Of the files of the controller that were found.")]
-    recordings: Annotated[Name, Doc("The path of the recordings.")]
+    recordings: Annotated[Name, Doc("The path of the recordings or drives.")]
     scenarios: Annotated[tuple[shared.Number, ...], Rule(least=1)]
     require: Annotated[tuple[Name, ...], Rule(least=1), Doc("Requirements, each of the form G φ.")]
     drivers: Annotated[tuple[str, ...], Doc("Driver models that are put in the place of SV.")]

@@ -29,11 +29,11 @@ class OccurrenceRow(NamedTuple):
 def _resimulated(result: PageResult, context: PageContext, words: Words) -> Values:
     """Return the values of the template: the answer, and a row for each occurrence."""
     answer = read(ResimulationData, result.data, result.name)
-    found = {x.id: x for x in answer.occurrences}
+    results = {x.id: x for x in answer.occurrences}
     rows = [
-        OccurrenceRow(x, found[x.id], _cards(found[x.id], result, context))
+        OccurrenceRow(x, results[x.id], _cards(results[x.id], result, context))
         for x in answer.request.occurrences
-        if x.id in found
+        if x.id in results
     ]
     return {"answer": answer, "rows": rows}
 

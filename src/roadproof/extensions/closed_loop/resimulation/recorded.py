@@ -1,7 +1,6 @@
 """Occurrences of scenarios in recordings as situations: SV begins as recorded, all others move so."""
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import ceil
 from typing import Any, TypeAlias
@@ -10,13 +9,16 @@ import numpy as np
 import numpy.typing as npt
 
 from roadproof.extensions.closed_loop.protocol import OBSERVED
-from roadproof.extensions.closed_loop.resimulation.data import RecordedOccurrence
-from roadproof.extensions.closed_loop.simulation import VehicleSamples, follow
+from roadproof.extensions.closed_loop.resimulation.occurrence import (
+    OccurrenceLimits,
+    OccurrencePlace,
+    RecordedSituation,
+    recorded_situation,
+)
+from roadproof.extensions.closed_loop.simulation import VehicleSamples
 from roadproof.extensions.closed_loop.situation import (
-    Limits,
     Phase,
     StepClock,
-    TrafficSituation,
     VehicleCourse,
 )
 from roadproof.extensions.traffic.evaluate.evaluate import Findings
@@ -24,9 +26,7 @@ from roadproof.extensions.traffic.evaluate.foretelling import last_common
 from roadproof.extensions.traffic.evaluate.one_trace import road_of
 from roadproof.extensions.traffic.evaluate.traces import gather_one
 from roadproof.extensions.traffic.formats.recording import Recording
-from roadproof.library.scenarios import LANE, SUBJECT, roles
-from roadproof.runtime.canonical import digest
-from roadproof.runtime.records import dataclass
+from roadproof.library.scenarios import SUBJECT, roles
 from roadproof.world.road import Road
 from roadproof.world.signals import KINDS, RECORDED
 
@@ -35,27 +35,6 @@ _NEAR = 100.0  # m along the road, between fronts, within which the controller s
 _MOST = 20  # vehicles of a drive file
 _BACK = 1.0  # s in which a course comes back to the recorded place
 _FINE = 1000
-_ANY = Limits(*map(Fraction, (-1000, 1000, 1000, 1000, 1000, 1000)))
-"""The limits of a recorded vehicle: it moves as recorded, whatever its model allows."""
-
-
-@dataclass(frozen=True)
-class RecordedSituation:
-    """An occurrence, and the situation that it becomes."""
-
-    occurrence: RecordedOccurrence
-    situation: TrafficSituation
-
-
-@dataclass(frozen=True)
-class OccurrenceLimits:
-    """The clock's step (s), the greatest duration (s), and the limits of the vehicle under test."""
-
-    dt: Fraction
-    seconds: Fraction
-    subject: Limits
-
-
 _Key: TypeAlias = tuple[int, tuple[int, ...]]
 """The first frame of a match, and its vehicles in the order of roles."""
 
@@ -103,33 +82,10 @@ class _RecordingReader:
         clock = StepClock(dt, steps)
         samples = self._samples(everyone, (first, last), clock)
         courses = {name: self._course(k, samples[name], dt) for name, k in everyone.items()}
-        free = {SUBJECT: self.limits.subject}
-        situation = TrafficSituation(
-            courses,
-            self._road(int(recording.direction[cast[SUBJECT]])),
-            {LANE: lane} if lane else {},
-            clock,
-            {name: free.get(name, _ANY) for name in courses},
-        )
-        others = [x for x in everyone if x != SUBJECT]
-        tracks = {name: _column(follow([courses[name]], situation, name)) for name in others}
-        deviation = max(_apart(tracks[name], samples[name]) for name in others)
-        sizes = {name: (float(x.length), float(x.width)) for name, x in courses.items()}
-        occurrence = RecordedOccurrence(
-            id=_id(recording.name, first, numbers),
-            recording=recording.name,
-            scenarios=scenarios,
-            vehicles=dict(zip(cast, numbers, strict=True)),
-            lane=lane,
-            first_frame=first,
-            seconds=clock.horizon,
-            others=len(near),
-            left_out=left_out,
-            deviation=round(deviation, 3),
-            gap=least_gap({name: samples[name] for name in cast}, sizes),
-            sha256=digest(courses, situation.road, situation.lanes, clock, situation.limits),
-        )
-        return RecordedSituation(occurrence, situation)
+        names = dict(zip(cast, map(str, numbers), strict=True))
+        road = self._road(int(recording.direction[cast[SUBJECT]]))
+        place = OccurrencePlace(recording.name, scenarios, names, lane, first, left_out)
+        return recorded_situation(place, courses, samples, road, clock, self.limits.subject)
 
     def _road(self, way: int) -> Road:
         if way not in self._roads:
@@ -211,10 +167,10 @@ def _followed(
     phases: list[Phase] = []
     for k in range(len(places) - 1):
         foreseen = place + (speed + float(speeds[k + 1])) * step / 2
-        wanted = float(speeds[k + 1]) + (float(places[k + 1]) - foreseen) / _BACK
+        aim = float(speeds[k + 1]) + (float(places[k + 1]) - foreseen) / _BACK
         if is_forward:
-            wanted = max(wanted, 0.0)
-        push = Fraction(round((wanted - speed) / step * _FINE), _FINE)
+            aim = max(aim, 0.0)
+        push = Fraction(round((aim - speed) / step * _FINE), _FINE)
         faster = speed + float(push) * step
         if is_forward:
             faster = max(faster, 0.0)
@@ -223,39 +179,5 @@ def _followed(
     return first_place, first_speed, tuple(phases)
 
 
-def least_gap(tracks: Mapping[str, VehicleSamples], sizes: Mapping[str, tuple[float, float]]) -> float | None:
-    """Return the least gap between SV and another vehicle while their boxes overlap across the road (m).
-
-    ``tracks``: samples at the same instants; ``sizes``: length and width. 0 where boxes touch, None where no
-    vehicle is in the way of another.
-    """
-    me, gaps = tracks[SUBJECT], list[float]()
-    length, width = sizes[SUBJECT]
-    for name, x in tracks.items():
-        if name == SUBJECT:
-            continue
-        long, wide = sizes[name]
-        meets = (x.d - wide < me.d) & (me.d - width < x.d)
-        gap = np.maximum(np.maximum(x.s - long - me.s, me.s - length - x.s), 0.0)[meets]
-        gaps += [float(gap.min())] if len(gap) else []
-    return round(min(gaps), 3) if gaps else None
-
-
-def _apart(one: VehicleSamples, other: VehicleSamples) -> float:
-    """Return the greatest distance between two motions, along or across the road (m)."""
-    return float(max(np.abs(one.s - other.s).max(), np.abs(one.d - other.d).max()))
-
-
-def _column(track: VehicleSamples) -> VehicleSamples:
-    return VehicleSamples(
-        track.s[:, 0], track.d[:, 0], track.v_lon[:, 0], track.v_lat[:, 0], track.a_lon[:, 0]
-    )
-
-
 def _fine(value: float) -> Fraction:
     return Fraction(round(float(value) * _FINE), _FINE)
-
-
-def _id(recording: str, first: int, numbers: Sequence[int]) -> str:
-    parts = [recording, *map(str, numbers), f"from{first}"]
-    return "_".join(re.sub(r"[^A-Za-z0-9]+", "_", x) for x in parts)

@@ -25,7 +25,7 @@ def sheet_of(view: ResimulationView) -> Sheet[OccurrenceView]:
             Column("first_frame", lambda x: x.occurrence.first_frame, heading="first frame"),
             Column("seconds", lambda x: float(x.occurrence.seconds)),
             Column("vehicles", lambda x: vehicles_text(x)),
-            Column("recorded_gap_m", lambda x: x.occurrence.gap, heading="least gap recorded (m)"),
+            Column("recorded_gap_m", lambda x: x.occurrence.gap, heading="least gap before (m)"),
             Column("gap_m", lambda x: x.gap, heading="with the controller (m)"),
             Column("shows", lambda x: ", ".join(map(str, x.shows)), "frame"),
             Column("preventable_by", lambda x: ", ".join(x.preventable_by), heading="preventable by"),
@@ -62,9 +62,7 @@ def finding_text(x: OccurrenceView) -> str:
     if x.finding == "ERROR":
         return str(x.reason)
     recorded, driven = (_gap(y) for y in (x.occurrence.gap, x.gap))
-    return (
-        f"{float(x.occurrence.seconds):g} s; least gap {recorded} as recorded, {driven} with the controller"
-    )
+    return f"{float(x.occurrence.seconds):g} s; least gap {recorded} before, {driven} with the controller"
 
 
 def _gap(value: float | None) -> str:
@@ -74,14 +72,14 @@ def _gap(value: float | None) -> str:
 def _summary(view: ResimulationView) -> Iterator[str]:
     every = view.occurrences
     preventable = sum(bool(x.preventable_by) for x in view.failures)
-    kept = sum(x.finding == "KEPT" for x in every)
+    without = sum(x.finding == "KEPT" for x in every)
     yield (
         f"{len(view.failures)} of {len(every)} occurrences with a failure, {preventable} of them "
-        f"preventable; {kept} without"
+        f"preventable; {without} without"
     )
     apart = max((x.occurrence.deviation for x in every), default=0.0)
     left_out = sum(x.occurrence.left_out for x in every)
-    yield f"other vehicles move as recorded, within {apart:g} m, and do not react to the controller"
+    yield f"other vehicles move as before, within {apart:g} m, and do not react to the controller"
     if left_out:
         yield f"{left_out} vehicles nearby come or go meanwhile; they are left out"
 

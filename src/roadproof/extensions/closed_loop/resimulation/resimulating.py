@@ -8,17 +8,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Unpack
 
 from roadproof.errors import InputError, UsageError
+from roadproof.extensions.catalogue.target_formulas import TargetFormulas
 from roadproof.extensions.closed_loop import settings
 from roadproof.extensions.closed_loop.controllers.opening import source_of
 from roadproof.extensions.closed_loop.falsifying import with_words
 from roadproof.extensions.closed_loop.resimulation import report
 from roadproof.extensions.closed_loop.resimulation.data import ResimulationRequest
-from roadproof.extensions.closed_loop.resimulation.question import ResimulationQuestion
-from roadproof.extensions.closed_loop.resimulation.recorded import (
+from roadproof.extensions.closed_loop.resimulation.occurrence import (
     OccurrenceLimits,
     RecordedSituation,
-    situations_in,
+    with_own_ids,
 )
+from roadproof.extensions.closed_loop.resimulation.question import ResimulationQuestion
+from roadproof.extensions.closed_loop.resimulation.recorded import situations_in
+from roadproof.extensions.closed_loop.resimulation.tested import drive_files, situations_of
 from roadproof.extensions.closed_loop.resimulation.view import OccurrenceView, ResimulationView
 from roadproof.extensions.closed_loop.search.shape import limits_of
 from roadproof.extensions.drivers.models import MODELS
@@ -31,7 +34,8 @@ from roadproof.frontends.report.picture import Picture, draw_drive, drawn, draws
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import exact
-from roadproof.library.scenarios import MIN_DANGER, SUBJECT
+from roadproof.library.scenarios import MIN_DANGER, SUBJECT, numbers_of
+from roadproof.questions.basis import Basis
 from roadproof.runtime.executors import executor_for
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
@@ -110,11 +114,12 @@ def resimulate(
     using: Definitions | None = None,
     **options: Unpack[ResimulateKeywords],
 ) -> Resimulated:
-    """Put a controller in the place of SV wherever a scenario occurs in recordings.
+    """Put a controller in the place of SV wherever a scenario occurs in recordings, or in drive files.
 
     ``controller``: FILE.py:NAME, FILE.fmu, or a command that speaks JSON lines. ``path``: a folder of
-    recordings in one format, or the file of one. ``require``: requirements ``G φ`` on SV and POV. All other
-    vehicles move as recorded. ``out``: a folder for evidence. Raises ``InputError``, ``UsageError``.
+    recordings in one format, or the file of one; or a drive file, or a folder of such files. ``require``:
+    requirements ``G φ`` on SV and POV. All other vehicles move as they did. ``out``: a folder for evidence.
+    Raises ``InputError``, ``UsageError``.
     """
     given = settings.Resimulate.of(options)
     home = with_words(definitions_of(using))
@@ -130,20 +135,26 @@ def resimulate(
     basis = basis_of(home, given, given.vehicles)
     car = basis.vehicles.get("", None) or load_vehicle("car")
     limits = OccurrenceLimits(dt, seconds, limits_of(basis.vehicles.get(SUBJECT, car), True))
-    evaluation = _evaluation(path, home, given)
-    every = [*_situations(evaluation, limits)]
-    scenarios = evaluation.settings.scenarios
+    files = drive_files(Path(path))
+    numbers = home.among(given.among)
+    if files:
+        every = [*with_own_ids(situations_of(files, _formulas(basis), limits, numbers or ()))]
+        scenarios, left_out = numbers or numbers_of(home.alone), dict[str, str]()
+    else:
+        evaluation = _evaluation(path, home, given)
+        every = [*with_own_ids(_situations(evaluation, limits))]
+        scenarios, left_out = evaluation.settings.scenarios, evaluation.failed
     if not every:
         raise InputError(
             f"{path}: none of the scenarios {', '.join(map(str, scenarios))} occurs in it; see roadproof "
-            "evaluate, or name others with --among"
+            f"{'catalogue' if files else 'evaluate'}, or name others with --among"
         )
     request = ResimulationRequest(
         controller=controller,
         kind=source.kind,
         sha256=source.sha256,
         recordings=str(path),
-        scenarios=scenarios,
+        scenarios=tuple(scenarios),
         require=tuple(given.require),
         drivers=models,
         dt=dt,
@@ -152,8 +163,13 @@ def resimulate(
     )
     question = ResimulationQuestion(basis, request, {x.occurrence.id: x.situation for x in every})
     question.require_sense()
-    notes = tuple(f"note: {name} is left out: {why}" for name, why in evaluation.failed.items())
+    notes = tuple(f"note: {name} is left out: {why}" for name, why in left_out.items())
     return replace(Resimulated.decide(question, given), notes=notes)
+
+
+def _formulas(basis: Basis) -> TargetFormulas:
+    numbers = numbers_of(basis.specification)
+    return TargetFormulas(basis.specification, numbers, None, basis.all_values())
 
 
 def _evaluation(path: str | Path, home: Definitions, given: settings.Resimulate) -> Evaluation:

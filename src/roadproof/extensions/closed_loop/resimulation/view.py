@@ -7,15 +7,10 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from roadproof.evidence.answer import ClaimAnswer
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.extensions.catalogue.drive_targets import targets_shown
-from roadproof.extensions.catalogue.entries import Freedom
 from roadproof.extensions.closed_loop.claim_names import BREAKS, KEEPS, claim_name
 from roadproof.extensions.closed_loop.driver_drives import confirmed, verdict_data
-from roadproof.extensions.closed_loop.protocol import OBSERVED
 from roadproof.extensions.closed_loop.resimulation.data import (
     SCHEMA,
     OccurrenceFinding,
@@ -23,10 +18,9 @@ from roadproof.extensions.closed_loop.resimulation.data import (
     RecordedOccurrence,
     ResimulationData,
 )
-from roadproof.extensions.closed_loop.resimulation.recorded import least_gap
-from roadproof.extensions.closed_loop.simulation import VehicleSamples
+from roadproof.extensions.closed_loop.resimulation.occurrence import least_gap
+from roadproof.extensions.closed_loop.resimulation.tested import samples_of, shown_numbers
 from roadproof.extensions.traffic.evaluate.decisions import Decision
-from roadproof.library.scenarios import number_in
 from roadproof.questions.question import Answers, EvidencePlace, heading_of
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.records import dataclass
@@ -100,7 +94,7 @@ def _view(question: ResimulationQuestion, x: RecordedOccurrence, known: Answers)
                 x,
                 finding,  # type: ignore[arg-type]
                 answer,
-                _numbers_shown(answer.drive, x, question),
+                shown_numbers(answer.drive.file, tuple(x.vehicles), question.formulas),
                 _gap(answer.drive, x, question),
             )
             if finding == "KEPT":
@@ -112,23 +106,11 @@ def _view(question: ResimulationQuestion, x: RecordedOccurrence, known: Answers)
     return OccurrenceView(x, "ERROR", reason=reasons[0] if reasons else NO_REASON)
 
 
-def _numbers_shown(
-    drive: JudgedDrive, x: RecordedOccurrence, question: ResimulationQuestion
-) -> tuple[int, ...]:
-    """Return the scenarios that a drive shows in the roles of an occurrence, in any lane."""
-    cast = drive.file.drive.cast({name: name for name in x.vehicles})
-    shown = targets_shown(replace(drive.file, drive=cast), question.formulas, Freedom(lanes=True))
-    return tuple(sorted({n for y in shown if (n := number_in(y.what)) is not None}))
-
-
 def _gap(drive: JudgedDrive, x: RecordedOccurrence, question: ResimulationQuestion) -> float | None:
     dt = question.settings.dt
     times = [k * dt for k in range(int(x.seconds / dt) + 1)]
     motions = {name: drive.file.drive.vehicles[name] for name in x.vehicles}
-    tracks = {
-        name: VehicleSamples(*(np.array([float(getattr(s, signal)) for s in states]) for signal in OBSERVED))
-        for name, states in ((name, states_at(motion, times)) for name, motion in motions.items())
-    }
+    tracks = {name: samples_of(states_at(motion, times)) for name, motion in motions.items()}
     return least_gap(tracks, {name: (float(m.length), float(m.width)) for name, m in motions.items()})
 
 
