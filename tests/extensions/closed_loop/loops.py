@@ -7,8 +7,8 @@ from typing import Any
 import roadproof as rp
 from roadproof.extensions.closed_loop.controllers.opening import opened, source_of
 from roadproof.extensions.closed_loop.data import FalsifyRequest
-from roadproof.extensions.closed_loop.falsifying import with_words
 from roadproof.extensions.closed_loop.question import FalsifyQuestion
+from roadproof.extensions.closed_loop.requirement_words import with_words
 from roadproof.extensions.closed_loop.search.problem import TargetProblem
 from roadproof.extensions.closed_loop.simulation import ControlLoop
 from roadproof.library.scenarios import name_of

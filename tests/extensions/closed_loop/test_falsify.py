@@ -19,7 +19,8 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import judge_file
 from roadproof.extensions.closed_loop.controllers.opening import source_of
-from roadproof.extensions.closed_loop.falsifying import Falsification, with_words
+from roadproof.extensions.closed_loop.falsifying import Falsification
+from roadproof.extensions.closed_loop.requirement_words import with_words
 from roadproof.extensions.closed_loop.search.margins import Ruler
 from roadproof.extensions.closed_loop.search.searching import Searching
 from roadproof.extensions.closed_loop.simulation import exact_drive

@@ -69,11 +69,7 @@ def test_others_move_as_the_file_says(coasting: Resimulated, recordings: Path) -
         assert len(vehicles) == len(about.vehicles) + about.others
         numbers = {**about.vehicles, **{n: n[1:] for n in vehicles if n.startswith("V")}}
         first = about.first_frame
-        way = (
-            1
-            if float(rows[int(numbers["POV" if "POV" in numbers else "POV1"])][first]["xVelocity"]) > 0
-            else -1
-        )
+        way = 1 if float(rows[int(about.vehicles["SV"])][first]["xVelocity"]) > 0 else -1
         for name, number in numbers.items():
             if name == "SV":
                 continue
@@ -273,7 +269,8 @@ def test_files_of_one_name_but_for_signs_have_ids_of_their_own(regression: Path,
         (tmp_path / name).write_bytes((regression / "failure-scenario_4.json").read_bytes())
     answer = resimulated("LateBrake", tmp_path, among=None, out=tmp_path / "out")
     assert sorted(answer.findings) == ["a_b", "a_b_2", "a_b_3"]
-    assert len([*(tmp_path / "out").glob("breaks-a_b*[0-9b].json")]) == 3
+    written = {x.name for x in (tmp_path / "out").glob("breaks-*.json")}
+    assert {f"breaks-{x}.json" for x in answer.findings} <= written
 
 
 def random_tracks(random: np.random.Generator) -> Iterator[VehicleSamples]:

@@ -7,7 +7,6 @@ from typing import Annotated, Final, Literal, TypeAlias
 from roadproof.evidence.answers import headings, shared
 from roadproof.evidence.codec import Doc, Rule
 from roadproof.evidence.schema_notes import FileOrEvidence
-from roadproof.extensions.closed_loop.search.searching import Method, Wanted
 from roadproof.extensions.drivers.verdict import DriverVerdict
 from roadproof.runtime.records import dataclass
 
@@ -19,6 +18,8 @@ FAILS: a judged drive breaks a requirement. SHOWN: a judged drive shows the targ
 NOT SHOWN: no drive was found. IMPOSSIBLE: it is proved that there is none. ERROR: the controller failed.
 """
 Kind: TypeAlias = Literal["python", "fmu", "command"]
+Method: TypeAlias = Literal["cma", "random"]
+Wanted: TypeAlias = Literal["any", "preventable"]
 Name: TypeAlias = Annotated[str, Rule(least=1)]
 Sha: TypeAlias = Annotated[str, Rule(pattern="^[0-9a-f]{64}$", called="SHA-256")]
 

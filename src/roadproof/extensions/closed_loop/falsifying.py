@@ -16,6 +16,7 @@ from roadproof.extensions.closed_loop.data import FalsifyRequest
 from roadproof.extensions.closed_loop.plane import draw_plane
 from roadproof.extensions.closed_loop.question import FalsifyQuestion
 from roadproof.extensions.closed_loop.regression import WrittenTests, write_tests
+from roadproof.extensions.closed_loop.requirement_words import with_words
 from roadproof.extensions.closed_loop.view import FalsifyView, TargetView
 from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.surveys.classify.classes import plan_of
@@ -27,9 +28,7 @@ from roadproof.frontends.report.picture import Picture, draw_drive, drawn, draws
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import exact
-from roadproof.library.loading import load_library
 from roadproof.library.scenarios import numbers_of
-from roadproof.library.specification import read_specification
 from roadproof.runtime.files import utf8
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
@@ -38,8 +37,6 @@ if TYPE_CHECKING:
     from roadproof.evidence.answer import ClaimAnswer
     from roadproof.extensions.closed_loop.keywords import FalsifyKeywords
     from roadproof.frontends.report.cases import Case
-
-_WORDS = Path(__file__).with_name("closed_loop.spec")
 
 
 @dataclass(frozen=True, repr=False)
@@ -168,13 +165,3 @@ def falsify(
     question = FalsifyQuestion(basis_of(home, given, given.vehicles), request)
     question.require_sense()
     return replace(Falsification.decide(question, given), notes=notes)
-
-
-def with_words(home: Definitions) -> Definitions:
-    """Return definitions with the words for requirements, such as collision."""
-    library, words = home.library, read_specification(_WORDS)
-    if any(x.text == words.text for x in library.files):
-        return home
-    extended = load_library([*library.files, words])
-    specification = extended.select(home.specification.set_name, home.specification.options)
-    return replace(home, specification=specification)

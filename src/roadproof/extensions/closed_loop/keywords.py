@@ -9,7 +9,7 @@ from roadproof.frontends.settings.keywords import BudgetKeywords, ModelsKeywords
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from roadproof.extensions.closed_loop.search.searching import Method, Wanted
+    from roadproof.extensions.closed_loop.data import Method, Wanted
     from roadproof.frontends.api.definitions import Among
     from roadproof.library.bind import Number
 

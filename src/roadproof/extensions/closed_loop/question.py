@@ -20,6 +20,7 @@ from roadproof.extensions.closed_loop.requirement import VehicleRequirement, rea
 from roadproof.extensions.closed_loop.search.problem import TargetProblem
 from roadproof.extensions.closed_loop.search.searching import Searching
 from roadproof.extensions.closed_loop.search.shape import SituationShape, limits_of
+from roadproof.extensions.closed_loop.simulation import LOOP
 from roadproof.extensions.closed_loop.situation import StepClock
 from roadproof.extensions.surveys.classify.division import divide_surely
 from roadproof.extensions.traffic.evaluate.decisions import (
@@ -261,7 +262,3 @@ class TargetBatch:
                 for name, _, claim in question.driven(target, failing.drive):
                     yield name, claim
         yield claim_name(SHOWN, target), question.search(target, pattern, "shown")
-
-
-LOOP = 1
-"""A number that changes with the loop, so that older stored answers do not count."""

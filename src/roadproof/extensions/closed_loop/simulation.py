@@ -29,6 +29,8 @@ from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Road
 
 Floats: TypeAlias = npt.NDArray[np.float64]
+LOOP = 1
+"""A number that changes with the loop, so that older stored answers do not count."""
 Rows: TypeAlias = "Sequence[tuple[Any, ...]]"
 """The values of several signals in each step."""
 _HALF = Fraction(1, 2)

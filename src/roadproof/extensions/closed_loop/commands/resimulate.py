@@ -26,8 +26,9 @@ findings:
 Wherever a scenario occurs, SV begins as it did, and the controller drives it for --seconds, or as long as all
 vehicles of the scenario are recorded. Its route across the road is the former one unless the controller
 demands another. All others move as before and do not react to it, so a vehicle behind may run into it. In
-recordings, vehicles within 100 m along the road are seen; requirements are about POVs of the scenario. Exit codes: 10 if
-a failure was found, 20 if the controller gave no drive, else 0, which shows nothing about other drives.
+recordings, vehicles within 100 m along the road are seen; requirements are about POVs of the scenario.
+Exit codes: 10 if a failure was found, 20 if the controller gave no drive, else 0, which shows nothing about
+other drives.
 """
 OPTIONS = Resimulate
 

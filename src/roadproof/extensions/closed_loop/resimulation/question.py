@@ -14,10 +14,10 @@ from roadproof.extensions.catalogue.target_formulas import TargetFormulas
 from roadproof.extensions.closed_loop.claim_names import BREAKS, KEEPS, claim_name
 from roadproof.extensions.closed_loop.controllers.opening import ControllerSource
 from roadproof.extensions.closed_loop.driver_drives import decisions_on, driven_claims, models_of
-from roadproof.extensions.closed_loop.question import LOOP
 from roadproof.extensions.closed_loop.requirement import VehicleRequirement, read_requirement
 from roadproof.extensions.closed_loop.resimulation.data import RecordedOccurrence, ResimulationRequest
 from roadproof.extensions.closed_loop.resimulation.mode import RecordedRun, RequirementPart, Resimulation
+from roadproof.extensions.closed_loop.simulation import LOOP
 from roadproof.extensions.closed_loop.situation import TrafficSituation
 from roadproof.extensions.traffic.evaluate.decisions import Decision, Drivers, driver_models
 from roadproof.library.elaborate import read_claim

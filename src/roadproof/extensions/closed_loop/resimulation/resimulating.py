@@ -11,7 +11,7 @@ from roadproof.errors import InputError, UsageError
 from roadproof.extensions.catalogue.target_formulas import TargetFormulas
 from roadproof.extensions.closed_loop import settings
 from roadproof.extensions.closed_loop.controllers.opening import source_of
-from roadproof.extensions.closed_loop.falsifying import with_words
+from roadproof.extensions.closed_loop.requirement_words import with_words
 from roadproof.extensions.closed_loop.resimulation import report
 from roadproof.extensions.closed_loop.resimulation.data import ResimulationRequest
 from roadproof.extensions.closed_loop.resimulation.occurrence import (

@@ -6,12 +6,13 @@ simulations.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import field
-from typing import Any, Final, Literal, TypeAlias
+from typing import Any, Final
 
 import numpy as np
 
 from roadproof.errors import MissingSolverError
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.extensions.closed_loop.data import Method, Wanted
 from roadproof.extensions.closed_loop.errors import ControllerError
 from roadproof.extensions.closed_loop.search.problem import TargetProblem, Trial, prevents, severity
 from roadproof.extensions.closed_loop.search.reducing import Reduced, reduced
@@ -21,8 +22,6 @@ from roadproof.extensions.traffic.evaluate.decisions import Decision
 from roadproof.runtime.progress import report_stage
 from roadproof.runtime.records import dataclass
 
-Method: TypeAlias = Literal["cma", "random"]
-Wanted: TypeAlias = Literal["any", "preventable"]
 POPULATION: Final = 32
 _STALE = 6  # generations without an improvement, after which the search starts again
 _NEAR, _WIDE = 0.12, 0.3  # standard deviations in units of the range of a knob
