@@ -31,6 +31,7 @@ def question(*numbers: int, **more: Any) -> FalsifyQuestion:
         "classes": False,
         "simulations": 100,
         "seed": 0,
+        "seeds": (),
         "dt": Fraction(1, 10),
         "seconds": Fraction(10),
         "method": "cma",

@@ -21,11 +21,13 @@ from roadproof.evidence.judged import judge_file
 from roadproof.extensions.closed_loop.controllers.opening import source_of
 from roadproof.extensions.closed_loop.falsifying import Falsification
 from roadproof.extensions.closed_loop.requirement_words import with_words
+from roadproof.extensions.closed_loop.search.boundary import boundary_line, is_prevented
 from roadproof.extensions.closed_loop.search.margins import Ruler
 from roadproof.extensions.closed_loop.search.searching import Searching
 from roadproof.extensions.closed_loop.simulation import exact_drive
 from roadproof.frontends.cli.main import main
 from roadproof.verdict import ExitCode
+from roadproof.world.drive import Drive
 from roadproof.world.motion import states_at
 
 
@@ -302,6 +304,58 @@ def test_failing_drives_become_tests_of_a_catalogue(late: Falsification, tmp_pat
     assert load_drive(tmp_path / "failure-scenario_4.json").scenario == 4
     report = rp.catalogue(tmp_path, among="1,4", classes=False, drivers=["careful"])
     assert report.missing == ()
+
+
+def test_a_search_also_starts_from_drives(late: Falsification, tmp_path: Path) -> None:
+    """The first generation has the values of the failing drive, and its failure."""
+    late.write_tests(tmp_path / "tests")
+    plain = falsify("LateBrake", simulations=60, seed=5)
+    seeded = falsify("LateBrake", simulations=60, seed=5, seeds=tmp_path / "tests")
+    [y] = seeded.targets
+    x = next(z for z in late.targets if z.name == y.name)
+    assert x.simulations is not None
+    assert y.simulations is not None
+    known = x.simulations.values
+    places = {(p.gap, p.faster) for p in y.simulations.points}
+    if y.simulations.count >= 33:  # the seeds come after the points of the search's own
+        assert (known["POV.gap"], -known["POV.faster"]) in places
+    assert y.finding == "FAILS"
+    assert plain.question.settings.seeds == ()
+    assert len(seeded.question.settings.seeds) == 2
+    assert x.simulations.key != y.simulations.key
+    with pytest.raises(InputError, match="there is no drive file"):
+        falsify("LateBrake", seeds=tmp_path)
+
+
+def test_knobs_are_fitted_to_other_drives(late: Falsification) -> None:
+    """The values of a situation come back from its drive, but for instants."""
+    one = problem(4)
+    x = next(z for z in late.targets if z.name == one.name)
+    assert x.drive is not None
+    assert x.simulations is not None
+    drive = x.drive.file.drive
+    assert one.shape.fits(drive)
+    values = dict(zip((k.name for k in one.shape.knobs), one.shape.fitted(drive), strict=True))
+    for name in ("SV.speed", "POV.gap", "POV.faster"):
+        assert values[name] == x.simulations.values[name]
+    turned = Drive({"SV": drive.vehicles["POV"], "POV": drive.vehicles["SV"]})
+    assert not one.shape.fits(turned)
+    assert not one.shape.fits(Drive({"SV": drive.vehicles["SV"]}))
+
+
+def test_the_boundary_of_a_driver_model_parts_gaps() -> None:
+    """Just below the boundary the model collides, just above it does not; lines are those of the file."""
+    one = problem(4)
+    line = boundary_line(one, one.shape.seed)
+    assert len(line) > 4
+    names = [k.name for k in one.shape.knobs]
+    for gap, faster in line:
+        sides = []
+        for change in (-0.8, 0.8):
+            values = list(one.shape.seed)
+            values[names.index("POV.gap")], values[names.index("POV.faster")] = gap + change, -faster
+            sides += is_prevented(one, [tuple(values)])
+        assert sides == [False, True]
 
 
 def test_a_failure_is_made_simple(late: Falsification) -> None:

@@ -41,6 +41,7 @@ class FalsifyRequest:
     seconds: Annotated[Fraction, Doc("How long each simulation is, in s.")]
     method: Method
     wanted: Annotated[Wanted, Doc("The failures that count: any, or those that a driver model prevents.")]
+    seeds: Annotated[tuple[Sha, ...], Doc("Of drives from which the searches also start.")]
     patience: Annotated[float, Doc("Seconds that the controller may take for a simulation or a reply.")]
 
 

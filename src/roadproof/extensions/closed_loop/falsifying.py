@@ -7,12 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Unpack
 
-from roadproof.errors import RoadproofError, UsageError
+from roadproof.errors import InputError, RoadproofError, UsageError
+from roadproof.evidence.drive_file import load_drive
 from roadproof.extensions.closed_loop import report, settings
 from roadproof.extensions.closed_loop.cases import falsify_cases
 from roadproof.extensions.closed_loop.claim_names import FAILS, claim_name
 from roadproof.extensions.closed_loop.controllers.opening import source_of
 from roadproof.extensions.closed_loop.data import FalsifyRequest
+from roadproof.extensions.closed_loop.drive_tests import drive_files
 from roadproof.extensions.closed_loop.plane import draw_plane
 from roadproof.extensions.closed_loop.question import FalsifyQuestion
 from roadproof.extensions.closed_loop.regression import WrittenTests, write_tests
@@ -29,9 +31,11 @@ from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import exact
 from roadproof.library.scenarios import numbers_of
+from roadproof.runtime.canonical import digest
 from roadproof.runtime.files import utf8
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
+from roadproof.world.drive import Drive
 
 if TYPE_CHECKING:
     from roadproof.evidence.answer import ClaimAnswer
@@ -129,8 +133,8 @@ def falsify(
 
     ``controller``: FILE.py:NAME, FILE.fmu, or a command that speaks JSON lines. ``require``: requirements
     ``G φ`` on SV and POV. ``drivers``: driver models that are put into failing drives, all where None. The
-    same ``seed`` gives the same answer. ``out``: a folder for evidence. Raises ``InputError``,
-    ``UsageError``.
+    same ``seed`` gives the same answer. ``seeds``: drive files from which the search also starts. ``out``: a
+    folder for evidence. Raises ``InputError``, ``UsageError``.
     """
     given = settings.Falsify.of(options)
     home = with_words(given.modified(definitions_of(using), given.among))
@@ -146,6 +150,7 @@ def falsify(
             plan_of(home.alone, numbers)
         except RoadproofError as error:
             is_divided, notes = False, (f"note: classes are left out: {error}",)
+    seeds = _drives(given.seeds)
     request = FalsifyRequest(
         controller=controller,
         kind=source.kind,
@@ -156,12 +161,23 @@ def falsify(
         classes=is_divided,
         simulations=given.simulations,
         seed=given.seed,
+        seeds=tuple(digest(x) for x in seeds),
         dt=exact("step", given.step, "s"),
         seconds=exact("seconds", given.seconds, "s"),
         method=given.method,
         wanted=given.failures,
         patience=float(given.patience),
     )
-    question = FalsifyQuestion(basis_of(home, given, given.vehicles), request)
+    question = FalsifyQuestion(basis_of(home, given, given.vehicles), request, seeds)
     question.require_sense()
     return replace(Falsification.decide(question, given), notes=notes)
+
+
+def _drives(path: str | Path | None) -> tuple[Drive, ...]:
+    """Return the drives of a file or a folder. Raises ``InputError`` where there is none."""
+    if path is None:
+        return ()
+    files = drive_files(Path(path))
+    if not files:
+        raise InputError(f"seeds={path}: there is no drive file (*.json) in it")
+    return tuple(load_drive(x).drive for x in files)

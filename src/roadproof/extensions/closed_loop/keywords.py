@@ -8,6 +8,7 @@ from roadproof.frontends.settings.keywords import BudgetKeywords, ModelsKeywords
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from pathlib import Path
 
     from roadproof.extensions.closed_loop.data import Method, Wanted
     from roadproof.frontends.api.definitions import Among
@@ -35,6 +36,7 @@ class FalsifyKeywords(
     classes: bool
     simulations: int
     seed: int
+    seeds: str | Path | None
     method: Method
 
 

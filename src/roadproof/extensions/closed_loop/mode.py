@@ -14,7 +14,7 @@ from roadproof.extensions.closed_loop.isolation import isolated
 from roadproof.extensions.closed_loop.search.problem import prevents
 from roadproof.extensions.closed_loop.search.searching import FailureSearchOutcome, Searching
 from roadproof.extensions.closed_loop.simulation import ControlLoop
-from roadproof.extensions.closed_loop.simulations_file import SimulationPoint, SimulationsFile
+from roadproof.extensions.closed_loop.simulations_file import PreventedFrom, SimulationPoint, SimulationsFile
 from roadproof.reasons import Reason, ReasonKind
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
@@ -106,6 +106,8 @@ class ClosedLoop(OwnMode):
                 SimulationPoint(gap=x, faster=y, kind=kind)  # type: ignore[arg-type]
                 for x, y, kind in outcome.points
             ),
+            guide=problem.guide or "",
+            boundary=tuple(PreventedFrom(gap=x, faster=y) for x, y in outcome.boundary),
         )
 
     def _reason(self, outcome: FailureSearchOutcome) -> Reason:

@@ -44,7 +44,8 @@ class PlaneKey(NamedTuple):
 class TargetCards(NamedTuple):
     """A failing target on the page: its drives as cards, those of driver models beside, and its plane.
 
-    ``gaps``, ``faster``: the ranges of the plane (m, m/s). ``keys``: its legend.
+    ``gaps``, ``faster``: the ranges of the plane (m, m/s). ``keys``: its legend. ``line``: the boundary of
+    the driver model ``guide`` (px), with a space between points.
     """
 
     target: TargetResult
@@ -53,6 +54,8 @@ class TargetCards(NamedTuple):
     gaps: tuple[float, float]
     faster: tuple[float, float]
     keys: tuple[PlaneKey, ...]
+    line: str
+    guide: str
 
 
 def _falsified(result: PageResult, context: PageContext, words: Words) -> Values:
@@ -67,18 +70,22 @@ def _cards(x: TargetResult, result: PageResult, context: PageContext) -> TargetC
     cards = tuple(_card(name, drive, x, result, context) for name, drive in drives.items())
     file = _simulations(x, result)
     points = () if file is None else file.points[:_MOST]
-    gaps, faster = _range([p.gap for p in points]), _range([p.faster for p in points])
-    dots = (
-        PlaneDot(
-            round(_LEFT + _INSET + (_WIDE - 2 * _INSET) * (p.gap - gaps[0]) / (gaps[1] - gaps[0]), 1),
-            round(_INSET + (_HIGH - 2 * _INSET) * (faster[1] - p.faster) / (faster[1] - faster[0]), 1),
-            _STYLES[p.kind][0],
-        )
-        for p in points
-    )
+    boundary = () if file is None else file.boundary
+    every = [*((p.gap, p.faster) for p in points), *((p.gap, p.faster) for p in boundary)]
+    gaps, faster = _range([gap for gap, _ in every]), _range([speed for _, speed in every])
+
+    def place(gap: float, speed: float) -> tuple[float, float]:
+        across = (gap - gaps[0]) / (gaps[1] - gaps[0]), (faster[1] - speed) / (faster[1] - faster[0])
+        left, top = _LEFT + _INSET, _INSET
+        x, y = left + (_WIDE - 2 * _INSET) * across[0], top + (_HIGH - 2 * _INSET) * across[1]
+        return round(x, 1), round(y, 1)
+
+    dots = (PlaneDot(*place(p.gap, p.faster), _STYLES[p.kind][0]) for p in points)
+    line = " ".join("{},{}".format(*place(p.gap, p.faster)) for p in boundary)
     counts = Counter(p.kind for p in points)
     keys = tuple(PlaneKey(*style, counts[kind]) for kind, style in _STYLES.items() if counts[kind])
-    return TargetCards(x, cards, tuple(dots), gaps, faster, keys)
+    guide = "" if file is None else file.guide
+    return TargetCards(x, cards, tuple(dots), gaps, faster, keys, line, guide)
 
 
 def _card(driver: str, drive: object, x: TargetResult, result: PageResult, context: PageContext) -> DriveCard:

@@ -16,9 +16,9 @@ _HEIGHT, _SIZE = 4.2, 14
 
 
 def draw_plane(target: TargetView) -> Any:
-    """Return a figure with a point for each simulation.
+    """Return a figure with a point for each simulation, and the boundary of a driver model.
 
-    Orange and red points meet at the boundary of preventability, which depends on all other knobs, too.
+    The boundary is drawn for the other knobs of the failing drive; points have others.
     """
     assert target.simulations is not None
     figure, [axes] = make_figure([_HEIGHT])
@@ -30,6 +30,10 @@ def draw_plane(target: TargetView) -> Any:
             axes.scatter(
                 x, y, s=_SIZE, c=colour, marker=marker, linewidths=0.8, label=f"{label} ({len(some)})"
             )
+    boundary, guide = target.simulations.boundary, target.simulations.guide
+    if boundary:
+        x, y = [p.gap for p in boundary], [p.faster for p in boundary]
+        axes.plot(x, y, color="#222222", linewidth=1.2, label=f"{guide} prevents a collision from here on")
     axes.set_xlabel("gap to the last POV at the start (m)")
     axes.set_ylabel("SV is faster at the start (m/s)")
     axes.set_title(f"{target.name}: {target.title}, {len(points)} simulations", loc="left", fontsize=10)

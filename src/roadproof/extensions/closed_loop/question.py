@@ -1,6 +1,7 @@
 """The question in which scenarios a vehicle under test fails."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
@@ -38,6 +39,7 @@ from roadproof.questions.question import Answers, QuestionBatch, Steps, walk_bat
 from roadproof.runtime.budget import Work
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.records import dataclass
+from roadproof.world.drive import Drive
 from roadproof.world.models import load_vehicle
 
 if TYPE_CHECKING:
@@ -48,11 +50,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FalsifyQuestion:
-    """The question what a controller does in each scenario, and in each class that no drive shows."""
+    """The question what a controller does in each scenario, and in each class that no drive shows.
+
+    ``seeds``: drives from which searches also start; none in a question about stored answers.
+    """
 
     kind: ClassVar[str] = "falsify"
     basis: Basis
     settings: FalsifyRequest
+    seeds: Sequence[Drive] = field(default=(), compare=False, repr=False)
 
     @property
     def work(self) -> Work:
@@ -178,7 +184,9 @@ class FalsifyQuestion:
         """Return the claim about a search for a target from a drive on."""
         problem, request = self.problem(target, pattern), self.settings
         source = ControllerSource(request.controller, request.kind, request.sha256)
-        searching = Searching(problem, request.simulations, request.seed, request.method, request.wanted)
+        starts = tuple(problem.shape.fitted(x) for x in self.seeds if problem.shape.fits(x))
+        limit, seed, method, kind = request.simulations, request.seed, request.method, request.wanted
+        searching = Searching(problem, limit, seed, method, kind, starts)
         drivers = "" if self.drivers is None else content_of(self.drivers)
         limits = (
             request.simulations,
@@ -187,6 +195,7 @@ class FalsifyQuestion:
             request.seconds,
             request.method,
             request.wanted,
+            request.seeds,
         )
         shape = problem.shape.pattern.drive, problem.shape.pattern.road, problem.shape.limits
         about = target, problem.shown.formula, request.require, drivers, dict(problem.values)

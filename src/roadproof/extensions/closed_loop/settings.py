@@ -46,6 +46,13 @@ class Falsify(
         least=1,
     )
     seed: int = search(0, "--seed N", "seed of the search (default: 0)", read=whole(0), least=0)
+    seeds: str | Path | None = search(
+        None,
+        "--seeds PATH",
+        "drive files from which the search also starts, such as the folder of explore --out",
+        read=Path,
+        rare=True,
+    )
     method: Method = search(
         "cma",
         "--method",

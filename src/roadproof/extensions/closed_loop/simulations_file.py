@@ -36,6 +36,14 @@ class SimulationPoint:
 
 
 @dataclass(frozen=True, kw_only=True)
+class PreventedFrom:
+    """A point of the boundary of a driver model: the least gap at which it prevents a collision."""
+
+    gap: Annotated[float, Doc("The gap to the last POV at the start, in m.")]
+    faster: Annotated[float, Doc("How much faster SV is than that POV at the start, in m/s.")]
+
+
+@dataclass(frozen=True, kw_only=True)
 class SimulationsFile(OwnEvidence):
     """All simulations of the search for one target. It shows no verdict: the drives beside it do."""
 
@@ -52,6 +60,11 @@ class SimulationsFile(OwnEvidence):
     ]
     fault: Annotated[str, Doc("The error of the controller that ended the search; empty for none.")]
     points: tuple[SimulationPoint, ...]
+    guide: Annotated[str, Doc("The driver model of the boundary; empty where none speaks of the target.")]
+    boundary: Annotated[
+        tuple[PreventedFrom, ...],
+        Doc("On samples, with the other knobs as in the failing drive, and nobody driving SV before."),
+    ]
 
     def fault_for(self, claim: "Claim") -> str:
         """Return why the file is about another claim: another controller, target or search."""

@@ -11,6 +11,7 @@ from roadproof.errors import InputError, UsageError
 from roadproof.extensions.catalogue.target_formulas import TargetFormulas
 from roadproof.extensions.closed_loop import settings
 from roadproof.extensions.closed_loop.controllers.opening import source_of
+from roadproof.extensions.closed_loop.drive_tests import drive_files
 from roadproof.extensions.closed_loop.requirement_words import with_words
 from roadproof.extensions.closed_loop.resimulation import report
 from roadproof.extensions.closed_loop.resimulation.data import ResimulationRequest
@@ -21,7 +22,7 @@ from roadproof.extensions.closed_loop.resimulation.occurrence import (
 )
 from roadproof.extensions.closed_loop.resimulation.question import ResimulationQuestion
 from roadproof.extensions.closed_loop.resimulation.recorded import situations_in
-from roadproof.extensions.closed_loop.resimulation.tested import drive_files, situations_of
+from roadproof.extensions.closed_loop.resimulation.tested import situations_of
 from roadproof.extensions.closed_loop.resimulation.view import OccurrenceView, ResimulationView
 from roadproof.extensions.closed_loop.search.shape import limits_of
 from roadproof.extensions.drivers.models import MODELS

@@ -8,10 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from roadproof.core_record import DRIVES
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, load_drive
-from roadproof.evidence.strict import read_json
 from roadproof.extensions.catalogue.drive_targets import targets_shown
 from roadproof.extensions.catalogue.entries import Freedom
 from roadproof.extensions.catalogue.target_formulas import TargetFormulas
@@ -27,21 +25,6 @@ from roadproof.extensions.closed_loop.situation import Phase, StepClock, Vehicle
 from roadproof.library.scenarios import LANE, SUBJECT, number_in, roles
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State, states_at
-
-
-def drive_files(path: Path) -> tuple[Path, ...]:
-    """Return the drive files of a path: itself, or those in the folder; none where it has recordings.
-
-    Raises ``InputError``.
-    """
-    if path.suffix == ".json" and path.is_file():
-        return (path,)
-    return tuple(x for x in sorted(path.glob("*.json")) if _is_drive(x)) if path.is_dir() else ()
-
-
-def _is_drive(path: Path) -> bool:
-    content = read_json(path)
-    return isinstance(content, dict) and content.get("schema") in DRIVES
 
 
 def situations_of(

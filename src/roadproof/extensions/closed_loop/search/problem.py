@@ -71,8 +71,13 @@ class TargetProblem:
 
     @property
     def models(self) -> tuple[str, ...]:
-        """The driver models that speak of the scenario; the first one guides the search."""
+        """The driver models that speak of the scenario."""
         return models_of(self.drivers, self.name)
+
+    @property
+    def guide(self) -> str | None:
+        """The first model with a formula, which guides the search; None where there is none."""
+        return next((x for x in self.models if not MODELS[x].is_stepped), None)
 
     def run(self, loop: ControlLoop, every: Sequence[tuple[float, ...]]) -> list[Trial]:
         """Simulate some values of the knobs. Raises ``ControllerError`` with the values in its message."""
@@ -101,13 +106,12 @@ class TargetProblem:
         ]
 
     def foretold(self, trial: Trial) -> Outcome | None:
-        """Return the outcome of a simulation with the first driver model in place of SV, on samples.
+        """Return the outcome of a simulation with the guide in place of SV, on samples.
 
         None where no model speaks of the scenario. It guides the search; ``decisions`` are exact.
         """
         manoeuvre = manoeuvre_of(self.name)
-        models = [x for x in self.models if not MODELS[x].is_stepped]
-        if manoeuvre is None or self.drivers is None or not models:
+        if manoeuvre is None or self.drivers is None or self.guide is None:
             return None
         situation = self.shape.situation(trial.values)
         tracks = {
@@ -116,7 +120,7 @@ class TargetProblem:
         }
         road, dt = self.shape.pattern.road, self.shape.clock.dt
         scene = SampledScene(tracks, road, self.shape.vehicles, dt, 0)
-        return replay_samples(scene, manoeuvre, models[0], self.drivers.settings)
+        return replay_samples(scene, manoeuvre, self.guide, self.drivers.settings)
 
     def file(
         self, situation: TrafficSituation, loop: ControlLoop, claim: Claim, may_overlap: bool

@@ -14,6 +14,7 @@ from roadproof.errors import MissingSolverError
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.closed_loop.data import Method, Wanted
 from roadproof.extensions.closed_loop.errors import ControllerError
+from roadproof.extensions.closed_loop.search.boundary import boundary_line, is_prevented
 from roadproof.extensions.closed_loop.search.problem import TargetProblem, Trial, prevents, severity
 from roadproof.extensions.closed_loop.search.reducing import Reduced, reduced
 from roadproof.extensions.closed_loop.simulation import ControlLoop, exact_drive
@@ -37,7 +38,8 @@ class FailureSearchOutcome:
     ``count``: simulations; ``first_failure``, ``first_preventable``: the number of simulations up to the
     first one, 0 for none. ``nearest``: the greatest margin of the target. ``fault``: the error by which the
     controller ended the search. ``reductions``: further simulations that made the failure simple.
-    ``points``: for each simulation the values of two knobs and its outcome.
+    ``points``: for each simulation the values of two knobs and its outcome; ``boundary``: where a driver
+    model begins to prevent a collision, over these knobs.
     """
 
     count: int = 0
@@ -53,17 +55,22 @@ class FailureSearchOutcome:
     fault: str = ""
     reductions: int = 0
     points: list[tuple[float, float, str]] = field(default_factory=list)
+    boundary: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True)
 class Searching:
-    """A search: ``budget`` simulations at most; ``wanted``: the failures after which it ends."""
+    """A search: ``budget`` simulations at most; ``wanted``: the failures after which it ends.
+
+    ``starts``: values of the knobs that the first generation has, besides its own.
+    """
 
     problem: TargetProblem
     budget: int
     seed: int
     method: Method = "cma"
     wanted: Wanted = "any"
+    starts: tuple[tuple[float, ...], ...] = ()
 
     def run(self, loop: ControlLoop) -> FailureSearchOutcome:
         """Return what is found; a controller that fails to answer ends the search, which says so."""
@@ -76,6 +83,7 @@ class Searching:
         try:
             state.reduce()
             state.judge_shown()
+            state.draw_boundary()
         except ControllerError as error:
             outcome.fault = outcome.fault or str(error)
         return outcome
@@ -146,8 +154,8 @@ class _SearchState:
         seed = self._unit(self.problem.shape.seed)
         near = np.clip(seed + self.random.normal(0, _NEAR, (count // 2 - 1, width)), 0, 1)
         far = self.random.random((count // 2, width))
-        edge = list(self._boundary())
-        return np.vstack([seed, near, far, *([np.array(edge)] if edge else [])])
+        others = [*map(self._unit, self.searching.starts), *self._boundary()]
+        return np.vstack([seed, near, far, *([np.array(others)] if others else [])])
 
     def _unit(self, values: Sequence[float]) -> Any:
         return np.clip((np.array(values) - self.low) / self.wide, 0, 1)
@@ -165,15 +173,10 @@ class _SearchState:
             low, high = 0.0, 1.0
             for _ in range(_BISECTIONS):
                 point[gaps[-1]] = (low + high) / 2
-                is_prevented = self._is_prevented(point)
-                low, high = (low, point[gaps[-1]]) if is_prevented else (point[gaps[-1]], high)
+                [is_far] = is_prevented(self.problem, [self._values(point)])
+                low, high = (low, point[gaps[-1]]) if is_far else (point[gaps[-1]], high)
             point[gaps[-1]] = high
             yield point.copy()
-
-    def _is_prevented(self, point: Any) -> bool:
-        [trial] = self.problem.run(ControlLoop(_Coasting(), 60.0), [self._values(point)])
-        foretold = self.problem.foretold(trial)
-        return foretold is not None and foretold.result is Result.PREVENTED
 
     def _values(self, point: Any) -> tuple[float, ...]:
         """Return the values of the knobs at a point of the unit cube, rounded to their grains."""
@@ -277,6 +280,12 @@ class _SearchState:
             outcome.failing, outcome.failing_values = last.drive, last.values
             outcome.decisions, outcome.reductions = last.decisions, last.simulations
 
+    def draw_boundary(self) -> None:
+        """Work out the boundary of the driver model, the other knobs as in the failing drive."""
+        if self.problem.fails is not None:
+            values = self.outcome.failing_values or self._values(self._unit(self.problem.shape.seed))
+            self.outcome.boundary = boundary_line(self.problem, values)
+
     def judge_shown(self) -> None:
         """Judge the drives that show the target most clearly; a failing drive shows it, too."""
         outcome = self.outcome
@@ -289,17 +298,6 @@ class _SearchState:
             if judged is not None:
                 outcome.shown, outcome.shown_values = judged, values
                 return
-
-
-class _Coasting:
-    """A vehicle that nobody drives."""
-
-    def reset(self, observation: object) -> None:
-        """Begin a simulation."""
-
-    def step(self, observation: object, dt: float) -> float:
-        """Return no acceleration."""
-        return 0.0
 
 
 def _cma() -> Any:

@@ -20,7 +20,7 @@ from roadproof.extensions.closed_loop.situation import (
 )
 from roadproof.library.scenarios import SUBJECT
 from roadproof.runtime.records import dataclass
-from roadproof.world.drive import Motion
+from roadproof.world.drive import Drive, Motion
 from roadproof.world.motion import state_at
 from roadproof.world.vehicle import Vehicle
 
@@ -153,20 +153,31 @@ class SituationShape:
     @cached_property
     def seed(self) -> tuple[float, ...]:
         """The values of the knobs that come nearest to the pattern itself."""
-        return tuple(float(x.value(self._fitted(x.name))) for x in self.knobs)
+        return self.fitted(self.pattern.drive)
 
-    def _fitted(self, knob: str) -> float:
+    def fits(self, drive: Drive) -> bool:
+        """Return whether a drive has the vehicles of the pattern in the same order along the road."""
+        if {*drive.vehicles} != {*self.vehicles}:
+            return False
+        order = sorted(self.vehicles, key=lambda name: drive.vehicles[name].s)
+        return order == sorted(self.vehicles, key=lambda name: self._motion(name).s)
+
+    def fitted(self, drive: Drive) -> tuple[float, ...]:
+        """Return the values of the knobs that come nearest to a drive that ``fits``."""
+        return tuple(float(x.value(self._fitted(x.name, drive))) for x in self.knobs)
+
+    def _fitted(self, knob: str, drive: Drive) -> float:
         name, _, quantity = knob.partition(".")
-        motion = self._motion(name)
+        motion = drive.vehicles[name]
         match quantity:
             case "speed":
                 return float(motion.v_lon)
             case "gap":
-                other = self._motion(self._reference(name))
+                other = drive.vehicles[self._reference(name)]
                 ahead, behind = (motion, other) if self._is_ahead(name) else (other, motion)
                 return float(ahead.s - ahead.length - behind.s)
             case "faster":
-                return float(motion.v_lon - self._motion(SUBJECT).v_lon)
+                return float(motion.v_lon - drive.vehicles[SUBJECT].v_lon)
             case "a_lon":
                 return float((state_at(motion, _FIT).v_lon - motion.v_lon) / _FIT)
             case "lasts":
