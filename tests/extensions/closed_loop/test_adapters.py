@@ -53,13 +53,15 @@ def test_a_command_is_falsified() -> None:
     assert answer.findings == {"scenario_4": "FAILS"}
 
 
-def test_an_fmu_drives_as_the_same_controller_in_python(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("package", "slave"), [("pythonfmu", 2), ("pythonfmu3", 3)])
+def test_an_fmu_drives_as_the_same_controller_in_python(package: str, slave: int, tmp_path: Path) -> None:
+    """An FMU of FMI 2.0, and one of FMI 3.0 where a package that builds it is installed."""
     pytest.importorskip("fmpy", reason="fmpy is not installed: FMUs are not tried")
     builder = pytest.importorskip(
-        "pythonfmu.builder", reason="pythonfmu is not installed: FMUs are not tried"
+        f"{package}.builder", reason=f"{package} is not installed: FMUs of FMI {slave}.0 are not tried"
     )
     script = tmp_path / "latebrake.py"
-    script.write_text(SLAVE)
+    script.write_text(SLAVES[slave])
     builder.FmuBuilder.build_FMU(script, dest=tmp_path)
     asked = problem(4)
     situation = asked.shape.situation(asked.shape.seed)
@@ -68,7 +70,8 @@ def test_an_fmu_drives_as_the_same_controller_in_python(tmp_path: Path) -> None:
         assert exact_drive(ControlLoop(controller, 60.0), situation) == expected
 
 
-SLAVE = """
+SLAVES = {
+    2: """
 from pythonfmu import Fmi2Causality, Fmi2Slave, Real
 
 
@@ -83,4 +86,23 @@ class LateBrake(Fmi2Slave):
     def do_step(self, current_time, step_size):
         self.acceleration = -9.0 if self.gap < 8 else 0.0
         return True
-"""
+""",
+    3: """
+from pythonfmu3 import CoSimulation, Fmi3Causality, Fmi3Slave, Float64
+
+
+class LateBrake(Fmi3Slave, CoSimulation):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.time = 0.0
+        self.gap = 1e6
+        self.acceleration = 0.0
+        self.register_variable(Float64("time", causality=Fmi3Causality.independent))
+        self.register_variable(Float64("gap", causality=Fmi3Causality.input))
+        self.register_variable(Float64("acceleration", causality=Fmi3Causality.output))
+
+    def do_step(self, current_time, step_size):
+        self.acceleration = -9.0 if self.gap < 8 else 0.0
+        return True
+""",
+}

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from functools import cache
 from math import ceil
 from typing import Any, TypeAlias
 
@@ -170,7 +171,7 @@ def _followed(
         aim = float(speeds[k + 1]) + (float(places[k + 1]) - foreseen) / _BACK
         if is_forward:
             aim = max(aim, 0.0)
-        push = Fraction(round((aim - speed) / step * _FINE), _FINE)
+        push = _thousandths(round((aim - speed) / step * _FINE))
         faster = speed + float(push) * step
         if is_forward:
             faster = max(faster, 0.0)
@@ -180,4 +181,10 @@ def _followed(
 
 
 def _fine(value: float) -> Fraction:
-    return Fraction(round(float(value) * _FINE), _FINE)
+    return _thousandths(round(float(value) * _FINE))
+
+
+@cache
+def _thousandths(count: int) -> Fraction:
+    """Return a fraction, the same object for the same value: long recordings have millions of them."""
+    return Fraction(count, _FINE)

@@ -136,26 +136,13 @@ def resimulate(
     basis = basis_of(home, given, given.vehicles)
     car = basis.vehicles.get("", None) or load_vehicle("car")
     limits = OccurrenceLimits(dt, seconds, limits_of(basis.vehicles.get(SUBJECT, car), True))
-    files = drive_files(Path(path))
-    numbers = home.among(given.among)
-    if files:
-        every = [*with_own_ids(situations_of(files, _formulas(basis), limits, numbers or ()))]
-        scenarios, left_out = numbers or numbers_of(home.alone), dict[str, str]()
-    else:
-        evaluation = _evaluation(path, home, given)
-        every = [*with_own_ids(_situations(evaluation, limits))]
-        scenarios, left_out = evaluation.settings.scenarios, evaluation.failed
-    if not every:
-        raise InputError(
-            f"{path}: none of the scenarios {', '.join(map(str, scenarios))} occurs in it; see roadproof "
-            f"{'catalogue' if files else 'evaluate'}, or name others with --among"
-        )
+    every, scenarios, notes = _occurrences(Path(path), home, given, basis, limits)
     request = ResimulationRequest(
         controller=controller,
         kind=source.kind,
         sha256=source.sha256,
         recordings=str(path),
-        scenarios=tuple(scenarios),
+        scenarios=scenarios,
         require=tuple(given.require),
         drivers=models,
         dt=dt,
@@ -164,8 +151,29 @@ def resimulate(
     )
     question = ResimulationQuestion(basis, request, {x.occurrence.id: x.situation for x in every})
     question.require_sense()
-    notes = tuple(f"note: {name} is left out: {why}" for name, why in left_out.items())
     return replace(Resimulated.decide(question, given), notes=notes)
+
+
+def _occurrences(
+    path: Path, home: Definitions, given: settings.Resimulate, basis: Basis, limits: OccurrenceLimits
+) -> tuple[list[RecordedSituation], tuple[int, ...], tuple[str, ...]]:
+    """Return the occurrences in drives or recordings, the scenarios that were looked for, and notes."""
+    files, numbers = drive_files(path), home.among(given.among)
+    notes = tuple[str, ...]()
+    if files:
+        every = [*with_own_ids(situations_of(files, _formulas(basis), limits, numbers or ()))]
+        scenarios = tuple(numbers or numbers_of(home.alone))
+    else:
+        evaluation = _evaluation(path, home, given)
+        every = [*with_own_ids(_situations(evaluation, limits))]
+        scenarios = evaluation.settings.scenarios
+        notes = tuple(f"note: {name} is left out: {why}" for name, why in evaluation.failed.items())
+    if not every:
+        raise InputError(
+            f"{path}: none of the scenarios {', '.join(map(str, scenarios))} occurs in it; see roadproof "
+            f"{'catalogue' if files else 'evaluate'}, or name others with --among"
+        )
+    return every, scenarios, notes
 
 
 def _formulas(basis: Basis) -> TargetFormulas:
