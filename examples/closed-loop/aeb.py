@@ -11,7 +11,7 @@ class Aeb:
 
     def step(self, observation, dt):
         me = observation.me
-        if self.since is None and any(needed(me, x) > 6 for x in observation.others if comes(me, x)):
+        if self.since is None and any(needed(me, x) > 5 for x in observation.others if comes(me, x)):
             self.since = observation.time
         if self.since is None or observation.time < self.since + self.late - 1e-9:
             return 0.0
