@@ -21,6 +21,7 @@ from evidence.folders import (
     write,
 )
 from evidence.kinds import MAKE, copy_of
+from examples import EVERY_CHANGE
 from roadproof.engines.prove.properties import find_label, name_of_claim
 from roadproof.errors import InputError
 from roadproof.evidence.checking import Checker
@@ -66,13 +67,17 @@ def _same_drives(one: Path, other: Path) -> bool:
     return all(texts) and len({read_claim(home, x).formula for x in texts}) == 1
 
 
+OTHER_KINDS = 4
+
+
 @pytest.mark.parametrize("kind", MAKE)
 def test_evidence_of_any_folder_under_a_claim_of_another_is_rejected(kind: str, tmp_path: Path) -> None:
-    """The file of a claim is that of a claim of each of the other kinds, and of its own kind."""
+    """The file of a claim is that of a claim of some of the other kinds, and of its own kind."""
     folder = copy_of(kind, tmp_path / "this")
     assert {x.outcome for x in check(folder)} == {Acceptance.ACCEPTED}
     chance, accepted = Random(kind), []
-    for other in MAKE:
+    others = [x for x in MAKE if x != kind]
+    for other in (kind, *(others if EVERY_CHANGE else chance.sample(others, OTHER_KINDS))):
         theirs = files_of(copy_of(other, tmp_path / "other" / other))
         pairs = [(a, b) for a in files_of(folder) for b in theirs if _shown(a) != _shown(b)]
         pairs = [(a, b) for a, b in pairs if not _same_drives(a, b)]
@@ -139,9 +144,10 @@ SAME_ANSWERS = {
 
 
 PARTS = 6  # of the changes, each tried by a test of its own, since one for all takes many minutes
+TRIED = range(PARTS) if EVERY_CHANGE else (0, 3)
 
 
-@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("part", TRIED)
 @pytest.mark.parametrize("name", SAME_ANSWERS)
 def test_no_change_is_accepted_that_changes_what_is_said(folder: Path, name: str, part: int) -> None:
     path = folder / name

@@ -12,6 +12,7 @@ import pytest
 
 import roadproof as rp
 from api.both_interfaces import IMPOSSIBLE, MINE, SLOW
+from examples import EVERY_CHANGE
 from roadproof.extensions.surveys.coverage.classes import GapClasses, GapGroup
 from roadproof.extensions.surveys.coverage.gap_drives import GapDrive, SimpleDrives
 from roadproof.frontends.api.checking import check
@@ -75,8 +76,11 @@ FOLDERS: dict[str, Callable[[Path], object]] = {
     "trees": trees,
     "witness": witness,
 }
-MOST, SLOW_ONES = 160, {"forged-catalogue": 60}
+MOST, SLOW_ONES = (160, 60) if EVERY_CHANGE else (48, 24)
 """Fields of a folder that are changed, as many of each file; of more there is a sample."""
+SWAPS = 500 if EVERY_CHANGE else 12
+"""Pairs of files that are swapped."""
+SLOW_FOLDERS = ("forged-catalogue", "forged-coverage")
 
 
 @pytest.fixture(scope="module")
@@ -154,11 +158,11 @@ def test_a_changed_field_is_rejected_or_has_no_effect(folder: Path, tmp_path: Pa
     sample = random.Random(0)
     counts = {"rejected": 0, "without effect": 0}
     files = [folder / QUESTION, *answers_in(folder)]
-    most = SLOW_ONES.get(folder.parents[1].name, MOST)
-    for path in files:
+    most = SLOW_ONES if folder.parents[1].name in SLOW_FOLDERS else MOST
+    for path in sample.sample(files, min(most, len(files))):
         content = json.loads(path.read_text())
         every = [*leaves(content)]
-        for field in sample.sample(every, min(most // len(files), len(every))):
+        for field in sample.sample(every, min(max(most // len(files), 1), len(every))):
             copy = tmp_path / "copy"
             shutil.rmtree(copy, ignore_errors=True)
             shutil.copytree(folder, copy)
@@ -178,7 +182,7 @@ def test_a_changed_field_is_rejected_or_has_no_effect(folder: Path, tmp_path: Pa
                 counts["without effect"] += 1
             else:
                 counts["rejected"] += 1
-    assert counts["rejected"] > 20
+    assert counts["rejected"] > 10
 
 
 def test_two_files_that_are_swapped_are_rejected_or_answer_each_others_claims(
@@ -186,7 +190,8 @@ def test_two_files_that_are_swapped_are_rejected_or_answer_each_others_claims(
 ) -> None:
     """A drive that refutes one claim may have what another asks for."""
     before, rejected = shown(folder), 0
-    for one, other in combinations(answers_in(folder), 2):
+    pairs = [*combinations(answers_in(folder), 2)]
+    for one, other in random.Random(0).sample(pairs, min(SWAPS, len(pairs))):
         copy = tmp_path / f"{one.stem}-{other.stem}"
         shutil.copytree(folder, copy)
         (copy / one.name).write_bytes(other.read_bytes())
@@ -199,7 +204,8 @@ def test_two_files_that_are_swapped_are_rejected_or_answer_each_others_claims(
 
 
 def test_a_file_that_is_removed_leaves_a_claim_in_doubt(folder: Path, tmp_path: Path) -> None:
-    for path in answers_in(folder):
+    files = answers_in(folder)
+    for path in random.Random(0).sample(files, min(MOST, len(files))):
         copy = tmp_path / path.stem
         shutil.copytree(folder, copy)
         (copy / path.name).unlink()

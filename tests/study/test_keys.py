@@ -4,7 +4,6 @@ Each question is asked, one thing is changed, and it is asked again with and wit
 answers are equal. Then it is asked as at first, and is known. Shipped and kept answers count here.
 """
 
-import os
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,6 +11,7 @@ import pytest
 
 import roadproof as rp
 from api.both_interfaces import without_seconds
+from examples import EVERY_CHANGE
 from roadproof.errors import RoadproofError
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library
@@ -45,11 +45,7 @@ SHORT: dict[str, tuple[str, ...]] = {
 """The changes that are made in each run, by question."""
 OTHERS = [x for x in PAIRS if x[1] not in SHORT.get(x[0], ())]
 """All others: ROADPROOF_CHANGES=all makes them, which takes hours."""
-SOME = (
-    OTHERS
-    if os.environ.get("ROADPROOF_CHANGES") == "all"
-    else [x for x in OTHERS if x[0] != "coverage"][::15]
-)
+SOME = OTHERS if EVERY_CHANGE else [x for x in OTHERS if x[0] != "coverage"][::15]
 """Those that a long run makes: one of 15, and none of coverage, where one takes more than ten minutes."""
 
 

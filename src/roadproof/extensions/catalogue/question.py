@@ -108,6 +108,7 @@ class CatalogueQuestion:
     @cached_property
     def formula_sets(self) -> tuple[TargetFormulas, ...]:
         """The formulas of targets in each spec set. Raises ``UsageError`` where classes are in doubt."""
+        _ = self.gap_classes  # an error of these comes at once; classes may take a minute
         return tuple(map(self._formulas_of, self.request.sets))
 
     def _formulas_of(self, set_name: str) -> TargetFormulas:
