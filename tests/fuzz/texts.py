@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from fuzz.case import Disagreement
 from logic import strategies
 from logic.test_show import canonical
+from roadproof.errors import InputError
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic import syntax
@@ -27,7 +28,10 @@ def check(case: syntax.Expression | Formula) -> int:
     specification = bundled_library().select("ext")
     for expand in (False, True):
         shown = text(as_syntax(case, expand), 80)
-        read = read_claim(specification, shown).formula
+        try:
+            read = read_claim(specification, shown).formula
+        except InputError as error:
+            raise Disagreement(f"is not read back: {shown}", case) from error
         if canonical(read, not expand) != canonical(case, not expand):
             raise Disagreement(f"reads back differently: {shown}", case)
     return 1

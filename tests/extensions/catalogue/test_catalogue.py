@@ -262,7 +262,7 @@ def ask(*paths: Path, **more: Any) -> CatalogueAnswer:
 def test_what_is_missing_is_made_and_then_nothing_is_missing(
     few: Path, tmp_path: Path, division: Division, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("roadproof.extensions.catalogue.question.divide", lambda *_, **__: division)
+    monkeypatch.setattr("roadproof.extensions.catalogue.question.divide_surely", lambda *_: division.classes)
     missing = {"class_3_6", "class_6", "class_7", "scenario_7", "class_2", "scenario_2"}
     found = ask(few)
     assert {*found.missing} == missing
