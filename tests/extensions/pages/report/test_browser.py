@@ -95,7 +95,7 @@ def test_tables_sort_by_keyboard_and_filter(browser, made):
     box.fill("dangerArises(SV,POV2)")
     assert table.locator("tbody tr:visible").count() == 9
     page.evaluate("location.hash = '#claim-0-0'")
-    page.wait_for_function("document.querySelector('#claim-0-0').checkVisibility()")
+    page.locator("#claim-0-0").wait_for(state="visible")
     assert box.input_value() == ""
 
 
@@ -113,7 +113,7 @@ def test_a_cell_of_the_grid_opens_its_claim(browser, made):
 def test_open_points_lead_to_their_place(browser, made):
     page, _ = opened(browser, made)
     page.locator(".finding a", has_text="scenarios 1 and 5").click()
-    page.wait_for_function("document.querySelector('#pair-1-0').open")
+    page.locator("#pair-1-0[open]").wait_for(state="attached")
 
 
 def test_a_page_of_72_drives_is_ready_before_it_opens_one(browser, tmp_path):

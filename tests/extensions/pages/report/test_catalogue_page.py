@@ -107,5 +107,5 @@ def test_the_table_of_drivers_can_be_read(browser, page, width, tallest, scheme)
     assert shown.evaluate("document.documentElement.scrollWidth") <= width
     assert shown.evaluate(PALE) == []
     table.locator("a", has_text="drive of eu1426").first.click()
-    shown.wait_for_function("document.querySelector('#own-0-0').open")
+    shown.locator("#own-0-0[open]").wait_for(state="attached")
     assert faults == []
