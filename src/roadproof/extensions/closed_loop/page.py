@@ -2,12 +2,12 @@
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import NamedTuple
 
 from roadproof.evidence.codec import read
 from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
 from roadproof.extensions.closed_loop.data import FalsifyData, TargetResult
+from roadproof.extensions.closed_loop.failure_cards import failure_cards
 from roadproof.extensions.closed_loop.simulations_file import PointKind, SimulationsFile
 from roadproof.extensions.pages.page.page_context import DriveCard, PageContext
 from roadproof.extensions.pages.page.results import PageResult, Words
@@ -15,7 +15,6 @@ from roadproof.extensions.pages.page.section_kind import OpenItem, SectionKind, 
 
 _LEFT, _WIDE, _HIGH, _INSET, _MOST = 48, 242, 160, 6, 3000
 """The frame of a plane (px), how far its points are from it, and how many are drawn at most."""
-_HERE = Path()
 _STYLES: Mapping[PointKind, tuple[str, str]] = {
     "other": ("var(--faint)", "another drive"),
     "shown": ("var(--one)", "the scenario, no failure"),
@@ -67,7 +66,7 @@ def _falsified(result: PageResult, context: PageContext, words: Words) -> Values
 
 def _cards(x: TargetResult, result: PageResult, context: PageContext) -> TargetCards:
     drives = {"": x.failing, **x.driven}
-    cards = tuple(_card(name, drive, x, result, context) for name, drive in drives.items())
+    cards = failure_cards("fails", x.name, drives, x.drivers, result, context)
     file = _simulations(x, result)
     points = () if file is None else file.points[:_MOST]
     boundary = () if file is None else file.boundary
@@ -86,20 +85,6 @@ def _cards(x: TargetResult, result: PageResult, context: PageContext) -> TargetC
     keys = tuple(PlaneKey(*style, counts[kind]) for kind, style in _STYLES.items() if counts[kind])
     guide = "" if file is None else file.guide
     return TargetCards(x, cards, tuple(dots), gaps, faster, keys, line, guide)
-
-
-def _card(driver: str, drive: object, x: TargetResult, result: PageResult, context: PageContext) -> DriveCard:
-    place = "-".join(filter(None, ("fails", str(result.id), x.name, driver)))
-    shown = drive if isinstance(drive, Mapping) else (result.folder or _HERE) / str(drive)
-    if not driver:
-        return DriveCard(context.drive(shown), "FAILS", x.name, place, title="your vehicle fails")
-    verdict = next(y for y in x.drivers if y.driver == driver)
-    if verdict.gap is not None:
-        margin = f", {verdict.gap:g} m left"
-    else:
-        margin = "" if verdict.instant is None else f", touches at {verdict.instant:g} s"
-    title = f"{driver} drives instead: {verdict.side}{margin}"
-    return DriveCard(context.drive(shown), "WITNESSED", x.name, place, title=title)
 
 
 def _simulations(x: TargetResult, result: PageResult) -> SimulationsFile | None:

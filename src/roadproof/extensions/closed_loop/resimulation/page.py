@@ -1,11 +1,11 @@
 """The section about a vehicle under test in place of recorded ones, on a report page."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
-from pathlib import Path
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from roadproof.evidence.codec import read
+from roadproof.extensions.closed_loop.failure_cards import failure_cards
 from roadproof.extensions.closed_loop.resimulation.data import (
     OccurrenceResult,
     RecordedOccurrence,
@@ -14,8 +14,6 @@ from roadproof.extensions.closed_loop.resimulation.data import (
 from roadproof.extensions.pages.page.page_context import DriveCard, PageContext
 from roadproof.extensions.pages.page.results import PageResult, Words
 from roadproof.extensions.pages.page.section_kind import OpenItem, SectionKind, Values
-
-_HERE = Path()
 
 
 class OccurrenceRow(NamedTuple):
@@ -42,20 +40,7 @@ def _cards(x: OccurrenceResult, result: PageResult, context: PageContext) -> tup
     if x.finding != "FAILS":
         return ()
     drives = {"": x.drive, **x.driven}
-    return tuple(_card(name, drive, x, result, context) for name, drive in drives.items())
-
-
-def _card(
-    driver: str, drive: object, x: OccurrenceResult, result: PageResult, context: PageContext
-) -> DriveCard:
-    place = "-".join(filter(None, ("breaks", str(result.id), x.id, driver)))
-    shown = drive if isinstance(drive, Mapping) else (result.folder or _HERE) / str(drive)
-    if not driver:
-        return DriveCard(context.drive(shown), "FAILS", x.id, place, title="your vehicle fails")
-    verdict = next(y for y in x.drivers if y.driver == driver)
-    margin = "" if verdict.gap is None else f", {verdict.gap:g} m left"
-    title = f"{driver} drives instead: {verdict.side}{margin}"
-    return DriveCard(context.drive(shown), "WITNESSED", x.id, place, title=title)
+    return failure_cards("breaks", x.id, drives, x.drivers, result, context)
 
 
 def _points(result: PageResult) -> Iterator[OpenItem]:
