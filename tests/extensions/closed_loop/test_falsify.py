@@ -324,19 +324,24 @@ def test_drivers_prevent_failures_of_the_late_example_only(name: str, failing: s
 
 
 def test_a_search_also_starts_from_drives(late: Falsification, tmp_path: Path) -> None:
-    """The first generation has the values of the failing drive, and its failure."""
+    """The first generation has the values of the failing drive; without it, it has not."""
     late.write_tests(tmp_path / "tests")
-    plain = falsify("LateBrake", simulations=60, seed=5)
-    seeded = falsify("LateBrake", simulations=60, seed=5, seeds=tmp_path / "tests")
+    plain = falsify("HardBrake", simulations=60, seed=5)
+    seeded = falsify("HardBrake", simulations=60, seed=5, seeds=tmp_path / "tests")
     [y] = seeded.targets
     x = next(z for z in late.targets if z.name == y.name)
     assert x.simulations is not None
     assert y.simulations is not None
     known = x.simulations.values
     places = {(p.gap, p.faster) for p in y.simulations.points}
-    if y.simulations.count >= 33:  # the seeds come after the points of the search's own
-        assert (known["POV.gap"], -known["POV.faster"]) in places
-    assert y.finding == "FAILS"
+    place = known["POV.gap"], -known["POV.faster"]
+    assert place in places
+    [z] = plain.targets
+    assert z.simulations is not None
+    assert place not in {(p.gap, p.faster) for p in z.simulations.points}
+    assert z.simulations.key != y.simulations.key
+    fails = falsify("LateBrake", simulations=60, seed=5, seeds=tmp_path / "tests")
+    assert fails.findings == {"scenario_4": "FAILS"}
     assert plain.question.settings.seeds == ()
     assert len(seeded.question.settings.seeds) == 2
     assert x.simulations.key != y.simulations.key
