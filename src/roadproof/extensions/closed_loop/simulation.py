@@ -14,6 +14,8 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from roadproof.evidence.claim import Claim
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.extensions.closed_loop.errors import ControllerError
 from roadproof.extensions.closed_loop.protocol import (
     OBSERVED,
@@ -277,6 +279,24 @@ def exact_drive(loop: ControlLoop, situation: TrafficSituation) -> Drive:
     if once != again:
         raise ControllerError(_difference(once, again, situation))
     return once
+
+
+def driven_file(
+    situation: TrafficSituation, claim: Claim, drive: Drive, may_overlap: bool, scenario: int | None = None
+) -> DriveFile:
+    """Return the drive of a situation as a file with the formula of a claim."""
+    return DriveFile(
+        scenario,
+        claim.home.set_name,
+        claim.text,
+        situation.clock.horizon,
+        dict(situation.lanes),
+        dict(claim.values),
+        dict(claim.home.options),
+        situation.road,
+        drive,
+        may_overlap,
+    )
 
 
 def _exact_run(loop: ControlLoop, situation: TrafficSituation) -> Drive:

@@ -7,12 +7,11 @@ from typing import Literal, TypeAlias
 
 from roadproof.evidence.answer import ClaimAnswer, undecided
 from roadproof.evidence.claim import Claim, OwnMode
-from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.extensions.closed_loop.controllers.opening import ControllerSource, opened
 from roadproof.extensions.closed_loop.errors import ControllerError
 from roadproof.extensions.closed_loop.isolation import isolated
-from roadproof.extensions.closed_loop.simulation import ControlLoop, exact_drive
+from roadproof.extensions.closed_loop.simulation import ControlLoop, driven_file, exact_drive
 from roadproof.extensions.closed_loop.situation import TrafficSituation
 from roadproof.reasons import Reason, ReasonKind
 from roadproof.runtime.records import dataclass
@@ -74,19 +73,7 @@ class Resimulation(OwnMode):
         outcome = self._outcome(self.driven)
         if outcome.drive is None:
             return undecided(claim, ReasonKind.CONTROLLER_GAVE_NO_DRIVE(outcome.fault))
-        situation = self.driven.situation
-        file = DriveFile(
-            None,
-            claim.home.set_name,
-            claim.text,
-            situation.clock.horizon,
-            dict(situation.lanes),
-            dict(claim.values),
-            dict(claim.home.options),
-            situation.road,
-            outcome.drive,
-            True,
-        )
+        file = driven_file(self.driven.situation, claim, outcome.drive, may_overlap=True)
         try:
             return ClaimAnswer(claim, JudgedDrive(file, claim.home.library))
         except RejectedError as error:

@@ -17,6 +17,7 @@ from roadproof.extensions.closed_loop.search.shape import SituationShape
 from roadproof.extensions.closed_loop.simulation import (
     ControlLoop,
     VehicleSamples,
+    driven_file,
     exact_drive,
     follow,
 )
@@ -126,18 +127,9 @@ class TargetProblem:
         self, situation: TrafficSituation, loop: ControlLoop, claim: Claim, may_overlap: bool
     ) -> DriveFile:
         """Return the exact drive of a situation as a file with the formula of a claim."""
-        return DriveFile(
-            self.shape.pattern.scenario if claim.text == self.shape.pattern.formula else None,
-            claim.home.set_name,
-            claim.text,
-            situation.clock.horizon,
-            dict(situation.lanes),
-            dict(claim.values),
-            dict(claim.home.options),
-            situation.road,
-            exact_drive(loop, situation),
-            may_overlap,
-        )
+        pattern = self.shape.pattern
+        scenario = pattern.scenario if claim.text == pattern.formula else None
+        return driven_file(situation, claim, exact_drive(loop, situation), may_overlap, scenario)
 
     def judged(
         self, situation: TrafficSituation, loop: ControlLoop, claim: Claim, may_overlap: bool
